@@ -1,0 +1,63 @@
+// SPDX-FileCopyrightText: 2026 the Alidade authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "base/error.h"
+#include "base/progress.h"
+#include "cloud/point_store.h"
+#include "overlay/frame_description.h"
+#include "plugin_api/reader.h"
+#include "survey/project.h"
+
+namespace alidade {
+
+/// The heavy data behind a project, loaded: immutable, shared between threads, keyed by id.
+struct LoadedData {
+  std::map<ScanId, std::shared_ptr<const PointStore>> clouds;
+  std::map<DesignId, std::shared_ptr<const DesignModel>> designs;
+};
+
+/// Reads all scans and designs of the project. A source that fails becomes a problem, not a failure:
+/// the rest still loads.
+struct LoadOutcome {
+  LoadedData data;
+  std::vector<Error> problems;
+  std::vector<ImportWarning> warnings;
+};
+Result<LoadOutcome> loadData(const Project& project, const Progress& progress);
+
+/// Decodes frames, keeping the last few. Thread-safe.
+class PictureCache {
+ public:
+  explicit PictureCache(std::size_t capacity = 8);
+  ~PictureCache();
+  Result<std::shared_ptr<const ColourImage>> picture(const Project& project, const Frame& frame);
+  void clear();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> m_impl;
+};
+
+/// What is selected, everywhere the same: window, overlay and 3D view share it.
+struct SelectionState {
+  DesignId design;
+  int element = -1;  ///< index in the design; -1: none
+  std::string stakePoint;
+  AnnotationId annotation;
+  friend bool operator==(const SelectionState&, const SelectionState&) = default;
+};
+
+/// The frame as plain data for the overlay. Error where the frame has no pose or no camera.
+Result<FrameDescription> describeFrame(const Project& project, const LoadedData& data, FrameId frame,
+                                       std::shared_ptr<const ColourImage> image,
+                                       const SelectionState& selection = {});
+
+}  // namespace alidade

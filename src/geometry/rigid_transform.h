@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 the Alidade authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#pragma once
+
+#include <glm/glm.hpp>
+#include <glm/gtc/quaternion.hpp>
+
+namespace alidade {
+
+/// Rotation then translation, double: `pInA = aFromB * pInB`. Named for the frames it joins:
+/// `cameraFromWorld`, `worldFromScanner`.
+struct RigidTransform {
+  glm::dquat rotation{1.0, 0.0, 0.0, 0.0};  ///< unit; GLM's order w, x, y, z
+  glm::dvec3 translation{0.0};              ///< metres
+
+  static RigidTransform identity() { return {}; }
+  /// From a rotation matrix (columns as GLM stores them) and a translation.
+  static RigidTransform fromMatrix(const glm::dmat3& rotationMatrix, const glm::dvec3& translation);
+  /// A camera that stands at `eye` and looks at `target`; OpenCV axes (x right, y down, z forward).
+  static RigidTransform cameraLookingAt(const glm::dvec3& eye, const glm::dvec3& target,
+                                        const glm::dvec3& up = {0, 0, 1});
+
+  glm::dvec3 operator*(const glm::dvec3& p) const { return rotation * p + translation; }
+  RigidTransform operator*(const RigidTransform& inner) const;
+  RigidTransform inverse() const;
+
+  glm::dmat3 rotationMatrix() const { return glm::mat3_cast(rotation); }
+  /// Origin of B in A's inverse: for cameraFromWorld, the camera's centre in the world.
+  glm::dvec3 centre() const { return inverse().translation; }
+  bool isFinite() const;
+};
+
+/// Angle in radians between the two attitudes, in [0, pi].
+double rotationAngleBetween(const RigidTransform& a, const RigidTransform& b);
+
+/// Screw-free interpolation: slerp of the attitudes, straight line between the *centres* (the
+/// inverse translations), which is what a moving camera does. t in [0,1].
+RigidTransform interpolateCameraPose(const RigidTransform& cameraFromWorld0, const RigidTransform& cameraFromWorld1,
+                                     double t);
+
+}  // namespace alidade

@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 the Alidade authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "base/image.h"
+#include "camera/camera.h"
+#include "cloud/point_store.h"
+#include "geometry/rigid_transform.h"
+#include "survey/design_model.h"
+#include "survey/display_settings.h"
+#include "survey/project.h"
+
+namespace alidade {
+
+/// A design with what of it is shown. `elementVisible` and `elementColour` are by element, or empty
+/// for "all" and "the element's own".
+struct DesignLayer {
+  std::shared_ptr<const DesignModel> model;
+  std::vector<std::uint8_t> elementVisible;
+  std::vector<Rgba8> elementColour;
+  std::vector<std::uint32_t> selected;  ///< element indices drawn highlighted
+};
+
+/// A mark at an observation: where it was picked and where the pose puts it.
+struct ResidualMark {
+  glm::dvec2 observedPx;
+  glm::dvec2 projectedPx;
+  std::string name;
+};
+
+/// All that a frame's picture is made of: plain data, no device, no file. World coordinates are
+/// double; whatever turns them to float first subtracts the camera's centre.
+struct FrameDescription {
+  Camera camera;                   ///< of the raw picture's size
+  RigidTransform cameraFromWorld;
+  std::shared_ptr<const ColourImage> image;  ///< raw picture; null draws a dark ground
+  int width = 0, height = 0;       ///< of the result; 0: the raw picture's. The lens is scaled to it.
+
+  std::vector<std::shared_ptr<const PointStore>> clouds;
+  std::vector<DesignLayer> designs;
+  std::vector<StakePoint> stakePoints;
+  std::vector<std::string> selectedStakePoints;  ///< by name
+  std::vector<Annotation> annotations;           ///< those of this frame and those tied to the world
+  AnnotationId selectedAnnotation;
+  std::vector<ResidualMark> residuals;
+  double residualScale = 1.0;
+  DisplaySettings display;
+};
+
+/// Pixels of one design element, counted on the result.
+struct ElementPixels {
+  std::uint32_t layer = 0;
+  std::uint32_t element = 0;
+  std::uint64_t visible = 0, hidden = 0, unknown = 0;
+};
+
+/// The picture and what can be asked of it. All images are of the result's size.
+struct OverlayPicture {
+  ColourImage colour;
+  DepthImage scanDepth;     ///< occlusion depth: +inf or NaN as in raster/occlusion.h
+  DepthImage designDepth;   ///< front-most design surface, metres along the axis; +inf where none
+  IdImage element;          ///< 1 + index over all layers' elements in order; 0 where none
+  Image<std::uint8_t> state;  ///< Visibility of the design at the pixel, as its enum value; Outside where none
+
+  std::uint64_t pointsTotal = 0, pointsDrawn = 0;
+  double worstErrorPx = 0;  ///< largest distance of a drawn design edge from its exact curve, pixels
+  std::vector<ElementPixels> elements;  ///< those with a pixel in the picture
+
+  /// The layer and element behind an `element` pixel value.
+  std::vector<std::uint32_t> firstElementOfLayer;
+};
+
+}  // namespace alidade

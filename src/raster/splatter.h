@@ -1,0 +1,51 @@
+// SPDX-FileCopyrightText: 2026 the Alidade authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "base/image.h"
+#include "camera/camera.h"
+#include "cloud/point_store.h"
+#include "cloud/selection.h"
+#include "geometry/rigid_transform.h"
+
+namespace alidade {
+
+/// One store's share of a frame.
+struct SplatLayer {
+  std::shared_ptr<const PointStore> store;
+  Selection selection;
+};
+
+struct SplatOptions {
+  bool colour = false;         ///< fill SplatImages::colour
+  bool ids = false;            ///< fill SplatImages::point
+  double pointSize = 1.0;      ///< user's factor on the automatic footprint
+  double minimumSizePx = 1.0;
+  double maximumSizePx = 16.0;
+  bool round = false;
+  bool fixedSize = false;      ///< Gantner (2018): pointSize is the size in pixels for every point
+};
+
+/// What the points give for one camera; all of the camera's size.
+struct SplatImages {
+  DepthImage depth;    ///< z along the optical axis, metres; +inf where no point falls
+  ColourImage colour;  ///< a = 0 where no point falls
+  /// 1 + the point's index over all layers in order (layer 0's points first); 0 where none.
+  Image<std::uint64_t> point;
+  std::uint64_t drawn = 0;
+};
+
+/// Draws the selected points through the camera's full lens, nearest wins. Vectorised (AVX-512, AVX2
+/// or scalar, chosen at run time) and threaded.
+SplatImages splat(const std::vector<SplatLayer>& layers, const Camera& camera,
+                  const RigidTransform& cameraFromWorld, const SplatOptions& options);
+
+/// "AVX-512", "AVX2" or "scalar"; ALIDADE_SIMD=avx2|scalar forces a slower one.
+const char* splatKernelName();
+
+}  // namespace alidade
