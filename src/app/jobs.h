@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include <glm/glm.hpp>
+
 #include "adjust/resection.h"
 #include "app/workspace.h"
 #include "base/error.h"
@@ -51,9 +53,12 @@ struct RenderedFrame {
   FrameDescription description;
   OverlayPicture picture;
   TitleBlock title;
+  std::optional<PoseQuality> poseQuality;
+  double scanSpacingM = 0;  ///< median over the clouds; 0 without a scan
 };
 Result<RenderedFrame> renderFrame(const Project& project, const LoadedData& data, FrameId frame, int width, int height,
-                                  OverlayRenderer& renderer, PictureCache& pictures);
+                                  OverlayRenderer& renderer, PictureCache& pictures,
+                                  const SelectionState& selection = {});
 
 /// With the title block unless `bare`; atomic.
 Result<void> exportPicture(const RenderedFrame& frame, const std::string& path, bool bare);

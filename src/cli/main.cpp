@@ -1,6 +1,40 @@
 // SPDX-FileCopyrightText: 2026 the Alidade authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-int main() {
-  return 0;
+#include <cstdio>
+
+#include <QGuiApplication>
+
+#include "app/version.h"
+#include "cli/command.h"
+
+namespace {
+
+constexpr int kBadUsage = 2;
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  using namespace alidade;
+  // Text on pictures needs fonts, never a display.
+  qputenv("QT_QPA_PLATFORM", "offscreen");
+  qputenv("QT_LOGGING_RULES", "qt.qpa.*=false");
+  const QGuiApplication application(argc, argv);
+
+  CLI::App app("Alidade: designs over raw images, exactly where they would stand", "alidade-cli");
+  app.set_version_flag("--version", std::string(softwareName()));
+  app.require_subcommand(1);
+  cli::Verbs verbs(app);
+  cli::addDemo(verbs);
+  cli::addInfo(verbs);
+  cli::addNew(verbs);
+  cli::addOverlay(verbs);
+  cli::addRefine(verbs);
+  cli::addProjectPoints(verbs);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kBadUsage;
+  }
+  return verbs.run();
 }

@@ -1,0 +1,283 @@
+// SPDX-FileCopyrightText: 2026 the Alidade authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "app/jobs.h"
+#include "app/pose_matching.h"
+#include "io/project_store.h"
+#include "io/reader_registry.h"
+
+namespace alidade {
+
+namespace {
+
+constexpr double kNominalFramesPerSecond = 15.0;
+
+std::string stemOf(const std::string& path) {
+  std::filesystem::path p(path);
+  if (!p.has_filename()) p = p.parent_path();
+  return p.stem().string();
+}
+
+std::string absolute(const std::string& path) {
+  std::error_code ignored;
+  auto full = std::filesystem::weakly_canonical(path, ignored);
+  return ignored || full.empty() ? path : full.string();
+}
+
+template <class T>
+std::int64_t nextId(const std::vector<T>& items) {
+  std::int64_t highest = 0;
+  for (const auto& item : items) highest = std::max(highest, item.id.value);
+  return highest + 1;
+}
+
+/// Builds a project step by step; each add... inspects one input.
+class Assembler {
+ public:
+  Assembler(Project project, const Progress& progress) : m_progress(progress) { m_outcome.project = std::move(project); }
+
+  Result<void> addScan(const std::string& path) {
+    const auto reader = ReaderRegistry::instance().findAs<ScanReader>(path);
+    if (!reader) return fail(reader.error());
+    auto info = (*reader)->inspect(path);
+    if (!info) return fail(info.error());
+    auto source = describeSource(path);
+    if (!source) return fail(source.error());
+    Scan scan;
+    scan.id.value = nextId(project().scans);
+    scan.name = stemOf(path);
+    scan.source = std::move(*source);
+    scan.info = std::move(*info);
+    noteCrs(scan.info.crs, path);
+    project().scans.push_back(std::move(scan));
+    return {};
+  }
+
+  Result<void> addDesign(const std::string& path) {
+    const auto reader = ReaderRegistry::instance().findAs<DesignReader>(path);
+    if (!reader) return fail(reader.error());
+    auto info = (*reader)->inspect(path);
+    if (!info) return fail(info.error());
+    auto source = describeSource(path);
+    if (!source) return fail(source.error());
+    Design design;
+    design.id.value = nextId(project().designs);
+    design.name = stemOf(path);
+    design.source = std::move(*source);
+    noteCrs(info->crs, path);
+    project().designs.push_back(std::move(design));
+    return {};
+  }
+
+  Result<void> addPictures(const std::string& path) {
+    const auto reader = ReaderRegistry::instance().findAs<PictureReader>(path);
+    if (!reader) return fail(reader.error());
+    auto set = (*reader)->inspect(path);
+    if (!set) return fail(set.error());
+    return set->isVideo ? addVideo(path, *set) : addPictureFiles(*set);
+  }
+
+  Result<void> addCameras(const std::string& path) {
+    const auto reader = ReaderRegistry::instance().findAs<CameraReader>(path);
+    if (!reader) return fail(reader.error());
+    auto set = (*reader)->inspect(path);
+    if (!set) return fail(set.error());
+    m_cameras.push_back({path, std::move(*set)});
+    return {};
+  }
+
+  Result<void> addPoints(const std::string& path, bool control) {
+    const auto reader = ReaderRegistry::instance().findAs<PointListReader>(path);
+    if (!reader) return fail(reader.error());
+    auto list = (*reader)->read(path);
+    if (!list) return fail(list.error());
+    for (const auto& warning : list->warnings) m_outcome.notes.push_back(warning.what + " (" + warning.where + ")");
+    for (const StakePoint& point : list->points) {
+      if (control) project().controlPoints.push_back({point.name, point.position, 0.003});
+      else project().stakePoints.push_back(point);
+    }
+    return {};
+  }
+
+  /// By what the file is. A CSV named like control points is taken for such.
+  Result<void> addAnything(const std::string& path) {
+    const auto reader = ReaderRegistry::instance().find(path);
+    if (!reader) return fail(reader.error());
+    switch ((*reader)->kind()) {
+      case ReaderKind::Scan: return addScan(path);
+      case ReaderKind::Design: return addDesign(path);
+      case ReaderKind::Pictures: return addPictures(path);
+      case ReaderKind::Cameras: return addCameras(path);
+      case ReaderKind::Points: return addPoints(path, stemOf(path).find("control") != std::string::npos);
+    }
+    return {};
+  }
+
+  NewProjectOutcome finish() {
+    auto notes = matchPoses(project(), m_cameras);
+    m_outcome.notes.insert(m_outcome.notes.end(), notes.begin(), notes.end());
+    giveTimes();
+    std::stable_sort(project().frames.begin(), project().frames.end(),
+                     [](const Frame& a, const Frame& b) { return a.timeSecs < b.timeSecs; });
+    noteDistance();
+    return std::move(m_outcome);
+  }
+
+  const Progress& progress() const { return m_progress; }
+  Project& project() { return m_outcome.project; }
+
+ private:
+  Result<void> addVideo(const std::string& path, const PictureSetInfo& set) {
+    auto source = describeSource(path);
+    if (!source) return fail(source.error());
+    Video video;
+    video.id.value = nextId(project().videos);
+    video.name = stemOf(path);
+    video.source = std::move(*source);
+    video.framesPerSecond = set.framesPerSecond;
+    video.frameCount = static_cast<std::int64_t>(set.pictures.size());
+    for (std::size_t i = 0; i < set.pictures.size(); ++i) {
+      Frame frame;
+      frame.id.value = nextFrameId();
+      frame.name = set.pictures[i].name;
+      frame.timeSecs = set.pictures[i].timeSecs;
+      frame.video = video.id;
+      frame.videoFrame = static_cast<std::int64_t>(i);
+      project().frames.push_back(std::move(frame));
+    }
+    project().videos.push_back(std::move(video));
+    return {};
+  }
+
+  Result<void> addPictureFiles(const PictureSetInfo& set) {
+    for (std::size_t i = 0; i < set.pictures.size(); ++i) {
+      if (m_progress.cancelled()) return fail(cancelledError());
+      m_progress.report(static_cast<double>(i) / static_cast<double>(set.pictures.size()), "Looking at pictures");
+      const std::string path = absolute(set.pictures[i].path);
+      const auto& frames = project().frames;
+      if (std::any_of(frames.begin(), frames.end(), [&](const Frame& f) { return f.image.path == path; })) continue;
+      auto source = describeSource(path);
+      if (!source) return fail(source.error());
+      Frame frame;
+      frame.id.value = nextFrameId();
+      frame.name = set.pictures[i].name;
+      frame.timeSecs = set.pictures[i].timeSecs;
+      frame.image = std::move(*source);
+      project().frames.push_back(std::move(frame));
+    }
+    return {};
+  }
+
+  std::int64_t nextFrameId() {
+    if (m_nextFrame == 0) m_nextFrame = nextId(project().frames);
+    return m_nextFrame++;
+  }
+
+  void noteCrs(const std::string& crs, const std::string& path) {
+    if (crs.empty()) return;
+    if (project().crs.empty()) project().crs = crs;
+    else if (project().crs != crs)
+      m_outcome.notes.push_back(path + " states another coordinate system than the project. Coordinates are used as they "
+                                       "stand: check that the two agree");
+  }
+
+  /// Pictures of a folder have no clock: a nominal rate makes them playable.
+  void giveTimes() {
+    auto& frames = project().frames;
+    if (frames.size() < 2) return;
+    const bool anyTime = std::any_of(frames.begin(), frames.end(), [](const Frame& f) { return f.timeSecs != 0; });
+    if (anyTime) return;
+    for (std::size_t i = 0; i < frames.size(); ++i) frames[i].timeSecs = static_cast<double>(i) / kNominalFramesPerSecond;
+    m_outcome.notes.push_back("The pictures carry no times: 15 a second are assumed. Add a trajectory with times if it matters");
+  }
+
+  /// Cameras far from the scan are the commonest sign of two coordinate systems.
+  void noteDistance() {
+    Bounds scanned;
+    for (const Scan& scan : project().scans) scanned.add(scan.info.bounds);
+    if (scanned.empty()) return;
+    const double reach = 3 * scanned.diagonal() + 500;
+    for (const Frame& frame : project().frames) {
+      if (!frame.cameraFromWorld) continue;
+      const double distance = glm::length(frame.cameraFromWorld->centre() - scanned.centre());
+      if (distance < reach) return;
+      m_outcome.notes.push_back("The cameras stand " + std::to_string(std::llround(distance)) +
+                                " m from the scan. Are both in the same coordinate system?");
+      return;
+    }
+  }
+
+  Progress m_progress;
+  NewProjectOutcome m_outcome;
+  std::vector<CameraSource> m_cameras;
+  std::int64_t m_nextFrame = 0;
+};
+
+}  // namespace
+
+Result<NewProjectOutcome> newProject(const NewProjectInputs& inputs, const Progress& progress) {
+  Assembler assembler(Project{}, progress);
+  const auto each = [&](const std::vector<std::string>& paths, const auto& add) -> Result<void> {
+    for (const auto& path : paths) {
+      if (progress.cancelled()) return fail(cancelledError());
+      progress.report(0.0, "Looking at " + std::filesystem::path(path).filename().string());
+      if (auto done = add(path); !done) return fail(done.error());
+    }
+    return {};
+  };
+  using Path = const std::string&;
+  if (auto r = each(inputs.scans, [&](Path p) { return assembler.addScan(p); }); !r) return fail(r.error());
+  if (auto r = each(inputs.designs, [&](Path p) { return assembler.addDesign(p); }); !r) return fail(r.error());
+  if (auto r = each(inputs.images, [&](Path p) { return assembler.addPictures(p); }); !r) return fail(r.error());
+  if (auto r = each(inputs.videos, [&](Path p) { return assembler.addPictures(p); }); !r) return fail(r.error());
+  if (auto r = each(inputs.cameras, [&](Path p) { return assembler.addCameras(p); }); !r) return fail(r.error());
+  if (auto r = each(inputs.stakePoints, [&](Path p) { return assembler.addPoints(p, false); }); !r) return fail(r.error());
+  if (auto r = each(inputs.controlPoints, [&](Path p) { return assembler.addPoints(p, true); }); !r) return fail(r.error());
+  NewProjectOutcome outcome = assembler.finish();
+  if (!outcome.project.scans.empty()) outcome.project.name = outcome.project.scans.front().name;
+  else if (!outcome.project.designs.empty()) outcome.project.name = outcome.project.designs.front().name;
+  else outcome.project.name = "Untitled";
+  return outcome;
+}
+
+Result<NewProjectOutcome> addToProject(const Project& project, const std::vector<std::string>& paths,
+                                       const Progress& progress) {
+  Assembler assembler(project, progress);
+  for (const auto& path : paths) {
+    if (progress.cancelled()) return fail(cancelledError());
+    progress.report(0.0, "Looking at " + std::filesystem::path(path).filename().string());
+    if (auto done = assembler.addAnything(path); !done) return fail(done.error());
+  }
+  NewProjectOutcome outcome = assembler.finish();
+  Project& made = outcome.project;
+  if (made.name.empty()) {
+    if (!made.scans.empty()) made.name = made.scans.front().name;
+    else if (!made.designs.empty()) made.name = made.designs.front().name;
+    else made.name = "Untitled";
+  }
+  return outcome;
+}
+
+Result<std::string> makeDemo(const std::string& folder, const DemoOptions& options, const Progress& progress) {
+  auto site = writeDemoSite(folder, options, progress.part(0.0, 0.95));
+  if (!site) return fail(site.error());
+  NewProjectInputs inputs;
+  inputs.scans = {site->scan};
+  inputs.designs = {site->design};
+  inputs.images = {site->images};
+  inputs.cameras = {site->cameras};
+  inputs.stakePoints = {site->stakePoints};
+  inputs.controlPoints = {site->controlPoints};
+  auto made = newProject(inputs, progress.part(0.95, 1.0));
+  if (!made) return fail(made.error());
+  made->project.name = "Sample inspection";
+  const std::string path = (std::filesystem::path(folder) / "demo.alidade").string();
+  if (auto saved = saveProject(made->project, path); !saved) return fail(saved.error());
+  return path;
+}
+
+}  // namespace alidade

@@ -1,0 +1,198 @@
+// SPDX-FileCopyrightText: 2026 the Alidade authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "app/workspace.h"
+
+#include <algorithm>
+#include <deque>
+#include <unordered_set>
+
+#include "io/picture_file.h"
+#include "io/reader_registry.h"
+
+namespace alidade {
+
+namespace {
+
+Result<std::shared_ptr<const PointStore>> loadScan(const Scan& scan, std::vector<ImportWarning>& warnings,
+                                                   const Progress& progress) {
+  const auto reader = ReaderRegistry::instance().findAs<ScanReader>(scan.source.path);
+  if (!reader) return fail(reader.error());
+  PointStoreBuilder builder;
+  auto read = (*reader)->read(
+      scan.source.path,
+      [&](const PointBatch& batch) {
+        builder.add(batch);
+        return !progress.cancelled();
+      },
+      progress.part(0.0, 0.6));
+  if (!read) return fail(read.error());
+  if (progress.cancelled()) return fail(cancelledError());
+  warnings.insert(warnings.end(), read->begin(), read->end());
+  if (builder.droppedCount() > 0)
+    warnings.push_back({std::to_string(builder.droppedCount()) + " points without finite coordinates were left out",
+                        scan.source.path});
+  return builder.build(progress.part(0.6, 1.0));
+}
+
+Result<std::shared_ptr<const DesignModel>> loadDesign(const Design& design, std::vector<ImportWarning>& warnings,
+                                                      const Progress& progress) {
+  const auto reader = ReaderRegistry::instance().findAs<DesignReader>(design.source.path);
+  if (!reader) return fail(reader.error());
+  auto model = (*reader)->read(design.source.path, progress, warnings);
+  if (!model) return fail(model.error());
+  return std::make_shared<const DesignModel>(std::move(*model));
+}
+
+}  // namespace
+
+Result<LoadOutcome> loadData(const Project& project, const Progress& progress) {
+  LoadOutcome outcome;
+  const double parts = std::max<std::size_t>(1, project.scans.size() + project.designs.size());
+  double done = 0;
+  const auto nextPart = [&] {
+    const Progress part = progress.part(done / parts, (done + 1) / parts);
+    ++done;
+    return part;
+  };
+  for (const Design& design : project.designs) {
+    auto model = loadDesign(design, outcome.warnings, nextPart());
+    if (progress.cancelled()) return fail(cancelledError());
+    if (model) outcome.data.designs[design.id] = std::move(*model);
+    else outcome.problems.push_back(model.error());
+  }
+  for (const Scan& scan : project.scans) {
+    auto store = loadScan(scan, outcome.warnings, nextPart());
+    if (progress.cancelled()) return fail(cancelledError());
+    if (store) outcome.data.clouds[scan.id] = std::move(*store);
+    else outcome.problems.push_back(store.error());
+  }
+  progress.report(1.0, "Loaded");
+  return outcome;
+}
+
+/// Decoders of videos stay open: seeking forward one frame is then one decode.
+struct PictureCache::Impl {
+  struct Entry {
+    std::string key;
+    std::shared_ptr<const ColourImage> image;
+  };
+  std::mutex mutex;
+  std::size_t capacity;
+  std::deque<Entry> recent;
+  std::map<std::string, std::unique_ptr<PictureSource>> videos;
+
+  std::shared_ptr<const ColourImage> find(const std::string& key) const {
+    const auto it = std::find_if(recent.begin(), recent.end(), [&](const Entry& e) { return e.key == key; });
+    return it == recent.end() ? nullptr : it->image;
+  }
+
+  Result<ColourImage> decodeVideo(const std::string& path, std::int64_t index) {
+    auto& source = videos[path];
+    if (!source) {
+      const auto reader = ReaderRegistry::instance().findAs<PictureReader>(path);
+      if (!reader) return fail(reader.error());
+      auto opened = (*reader)->open(path);
+      if (!opened) return fail(opened.error());
+      source = std::move(*opened);
+    }
+    return source->picture(static_cast<std::size_t>(index));
+  }
+};
+
+PictureCache::PictureCache(std::size_t capacity) : m_impl(std::make_unique<Impl>()) {
+  m_impl->capacity = std::max<std::size_t>(1, capacity);
+}
+
+PictureCache::~PictureCache() = default;
+
+Result<std::shared_ptr<const ColourImage>> PictureCache::picture(const Project& project, const Frame& frame) {
+  std::string path = frame.image.path;
+  const bool fromVideo = static_cast<bool>(frame.video);
+  if (fromVideo) {
+    const auto video = std::find_if(project.videos.begin(), project.videos.end(),
+                                    [&](const Video& v) { return v.id == frame.video; });
+    if (video == project.videos.end())
+      return fail("Frame '" + frame.name + "' belongs to a video that the project does not hold", project.path);
+    path = video->source.path;
+  }
+  if (path.empty()) return fail("Frame '" + frame.name + "' has no picture", project.path, "Add its picture file");
+
+  const std::string key = path + '\n' + std::to_string(frame.videoFrame);
+  std::lock_guard lock(m_impl->mutex);
+  if (auto found = m_impl->find(key)) return found;
+  auto decoded = fromVideo ? m_impl->decodeVideo(path, frame.videoFrame) : readPicture(path);
+  if (!decoded) return fail(decoded.error());
+  auto image = std::make_shared<const ColourImage>(std::move(*decoded));
+  m_impl->recent.push_front({key, image});
+  if (m_impl->recent.size() > m_impl->capacity) m_impl->recent.pop_back();
+  return image;
+}
+
+void PictureCache::clear() {
+  std::lock_guard lock(m_impl->mutex);
+  m_impl->recent.clear();
+  m_impl->videos.clear();
+}
+
+namespace {
+
+DesignLayer layerOf(const Design& design, std::shared_ptr<const DesignModel> model, const SelectionState& selection) {
+  DesignLayer layer;
+  if (!design.hiddenElements.empty()) {
+    const std::unordered_set<std::string> hidden(design.hiddenElements.begin(), design.hiddenElements.end());
+    layer.elementVisible.reserve(model->elements.size());
+    for (const DesignElement& element : model->elements)
+      layer.elementVisible.push_back(hidden.contains(element.globalId) ? 0 : 1);
+  }
+  if (selection.design == design.id && selection.element >= 0)
+    layer.selected.push_back(static_cast<std::uint32_t>(selection.element));
+  layer.model = std::move(model);
+  return layer;
+}
+
+}  // namespace
+
+Result<FrameDescription> describeFrame(const Project& project, const LoadedData& data, FrameId frameId,
+                                       std::shared_ptr<const ColourImage> image, const SelectionState& selection) {
+  const Frame* frame = project.findFrame(frameId);
+  if (!frame) return fail("The project holds no such frame", project.path);
+  const CameraRecord* camera = project.findCamera(frame->camera);
+  if (!camera)
+    return fail("Frame '" + frame->name + "' has no camera", project.path,
+                "Add a calibration: a COLMAP model or an OpenCV calibration file");
+  if (!frame->cameraFromWorld)
+    return fail("Frame '" + frame->name + "' has no pose", project.path,
+                "Add poses: a COLMAP model or a trajectory that covers this frame");
+  if (image && (image->width() != camera->camera.width() || image->height() != camera->camera.height()))
+    return fail("The picture is " + std::to_string(image->width()) + " × " + std::to_string(image->height()) +
+                    " px, its camera is calibrated for " + std::to_string(camera->camera.width()) + " × " +
+                    std::to_string(camera->camera.height()),
+                frame->name, "Use the calibration that belongs to this picture");
+
+  FrameDescription description;
+  description.camera = camera->camera;
+  description.cameraFromWorld = *frame->cameraFromWorld;
+  description.image = std::move(image);
+  for (const Scan& scan : project.scans)
+    if (const auto it = data.clouds.find(scan.id); scan.visible && it != data.clouds.end())
+      description.clouds.push_back(it->second);
+  for (const Design& design : project.designs)
+    if (const auto it = data.designs.find(design.id); design.visible && it != data.designs.end())
+      description.designs.push_back(layerOf(design, it->second, selection));
+  description.stakePoints = project.stakePoints;
+  if (!selection.stakePoint.empty()) description.selectedStakePoints.push_back(selection.stakePoint);
+  for (const Annotation& annotation : project.annotations)
+    if (annotation.anchor == AnnotationAnchor::World || annotation.frame == frameId)
+      description.annotations.push_back(annotation);
+  description.selectedAnnotation = selection.annotation;
+  for (const Observation& seen : project.observations) {
+    if (seen.frame != frameId || !seen.enabled) continue;
+    if (const auto projected = camera->camera.project(description.cameraFromWorld * seen.world))
+      description.residuals.push_back({seen.pixel, *projected, seen.name});
+  }
+  description.display = project.display;
+  return description;
+}
+
+}  // namespace alidade

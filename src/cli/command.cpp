@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 the Alidade authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "cli/command.h"
+
+#include <csignal>
+#include <cstdio>
+#include <iostream>
+
+#include <unistd.h>
+
+namespace alidade::cli {
+
+namespace {
+
+volatile std::sig_atomic_t g_interrupted = 0;
+
+void onInterrupt(int) {
+  g_interrupted = 1;
+}
+
+/// Draws on standard error, and only where that is a terminal: pipes and logs stay clean.
+class Bar {
+ public:
+  Progress progress() {
+    m_progress = Progress([this](double fraction, std::string_view what) { draw(fraction, what); });
+    return m_progress;
+  }
+  void clear() const {
+    if (m_drawn) std::fputs("\r\033[K", stderr);
+  }
+
+ private:
+  void draw(double fraction, std::string_view what) {
+    if (g_interrupted) m_progress.cancel();
+    if (!m_terminal) return;
+    constexpr int kWidth = 24;
+    std::string bar(kWidth, ' ');
+    for (int i = 0; i < static_cast<int>(fraction * kWidth); ++i) bar[i] = '=';
+    std::fprintf(stderr, "\r\033[K[%s] %3d %%  %.*s", bar.c_str(), static_cast<int>(fraction * 100),
+                 static_cast<int>(what.size()), what.data());
+    m_drawn = true;
+  }
+  bool m_terminal = isatty(STDERR_FILENO) != 0;
+  bool m_drawn = false;
+  Progress m_progress;
+};
+
+nlohmann::ordered_json jsonOf(const Error& error) {
+  return {{"error", {{"what", error.what}, {"where", error.where}, {"advice", error.advice}}}};
+}
+
+}  // namespace
+
+CLI::App* Verbs::add(const std::string& name, const std::string& description, Verb run) {
+  CLI::App* command = m_app.add_subcommand(name, description);
+  auto json = std::make_shared<bool>(false);
+  command->add_flag("--json", *json, "Answer as one JSON object on standard output");
+  m_entries.push_back({command, std::move(run), std::move(json)});
+  return command;
+}
+
+int Verbs::run() const {
+  for (const Entry& entry : m_entries) {
+    if (!entry.command->parsed()) continue;
+    std::signal(SIGINT, onInterrupt);
+    Bar bar;
+    const auto answer = entry.run(bar.progress());
+    bar.clear();
+    if (!answer) {
+      if (*entry.json) std::cout << jsonOf(answer.error()).dump(2) << '\n';
+      std::cerr << "alidade-cli: " << answer.error().text() << '\n';
+      return 1;
+    }
+    if (*entry.json) std::cout << answer->json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
+    else std::cout << answer->text;
+    std::cout.flush();
+    if (!std::cout) {
+      std::cerr << "alidade-cli: The answer could not be written to standard output\n";
+      return 1;
+    }
+    return answer->failed ? 1 : 0;
+  }
+  return 2;
+}
+
+}  // namespace alidade::cli

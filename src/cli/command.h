@@ -1,0 +1,54 @@
+// SPDX-FileCopyrightText: 2026 the Alidade authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "base/error.h"
+#include "base/progress.h"
+
+namespace alidade::cli {
+
+/// What a verb answers: a JSON object for `--json`, and the same in words for people.
+struct Answer {
+  nlohmann::ordered_json json;
+  std::string text;
+  bool failed = false;  ///< the job ran, but what was asked for did not come out (exit code 1)
+};
+
+/// A verb: declared on the application, run after parsing. Progress draws a bar on a terminal only;
+/// Ctrl+C cancels it.
+using Verb = std::function<Result<Answer>(const Progress&)>;
+
+/// Registers one verb: `run` is called where it was given on the command line.
+class Verbs {
+ public:
+  explicit Verbs(CLI::App& app) : m_app(app) {}
+  CLI::App* add(const std::string& name, const std::string& description, Verb run);
+
+  /// Runs the parsed verb and prints its answer. Exit code 0 done, 1 failed.
+  int run() const;
+
+ private:
+  struct Entry {
+    CLI::App* command;
+    Verb run;
+    std::shared_ptr<bool> json;
+  };
+  CLI::App& m_app;
+  std::vector<Entry> m_entries;
+};
+
+void addDemo(Verbs& verbs);
+void addInfo(Verbs& verbs);
+void addNew(Verbs& verbs);
+void addOverlay(Verbs& verbs);
+void addRefine(Verbs& verbs);
+void addProjectPoints(Verbs& verbs);
+
+}  // namespace alidade::cli

@@ -1,0 +1,179 @@
+// SPDX-FileCopyrightText: 2026 the Alidade authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include <fmt/format.h>
+
+#include "cli/command.h"
+#include "io/project_store.h"
+#include "io/reader_registry.h"
+
+namespace alidade::cli {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct Description {
+  Json json;
+  std::string text;
+};
+
+Json vec(const glm::dvec3& v) {
+  return {v.x, v.y, v.z};
+}
+
+Json boundsJson(const Bounds& bounds) {
+  if (bounds.empty()) return nullptr;
+  return {{"min", vec(bounds.min)}, {"max", vec(bounds.max)}};
+}
+
+std::string boundsText(const Bounds& bounds) {
+  if (bounds.empty()) return "  bounds    not stated\n";
+  return fmt::format("  bounds    E {:.3f} … {:.3f}  N {:.3f} … {:.3f}  H {:.3f} … {:.3f} m\n", bounds.min.x, bounds.max.x,
+                     bounds.min.y, bounds.max.y, bounds.min.z, bounds.max.z);
+}
+
+std::string crsText(const std::string& crs) {
+  if (crs.empty()) return "  crs       not stated\n";
+  return fmt::format("  crs       {}\n", crs.size() > 100 ? crs.substr(0, 97) + "…" : crs);
+}
+
+Result<Description> describe(const ScanReader& reader, const std::string& path) {
+  const auto info = reader.inspect(path);
+  if (!info) return fail(info.error());
+  const glm::dvec3 size = info->bounds.size();
+  const double area = size.x * size.y;
+  Description out;
+  out.json = {{"kind", "scan"},        {"points", info->pointCount}, {"bounds_m", boundsJson(info->bounds)},
+              {"crs", info->crs},      {"scale_m", vec(info->scale)}, {"attributes", info->attributes},
+              {"stations", Json::array()}, {"details", info->details}};
+  out.json["points_per_square_metre"] = area > 0 ? Json(static_cast<double>(info->pointCount) / area) : Json(nullptr);
+  for (const Station& station : info->stations)
+    out.json["stations"].push_back({{"name", station.name}, {"position_m", vec(station.worldFromScanner.translation)},
+                                    {"rows", station.rows}, {"columns", station.columns}});
+  out.text = fmt::format("  points    {}\n", info->pointCount) + boundsText(info->bounds) + crsText(info->crs) +
+             fmt::format("  columns   {}\n", fmt::join(info->attributes, ", "));
+  if (!info->stations.empty()) out.text += fmt::format("  stations  {}\n", info->stations.size());
+  out.text += fmt::format("  format    {}\n", info->details);
+  return out;
+}
+
+Result<Description> describe(const DesignReader& reader, const std::string& path) {
+  const auto info = reader.inspect(path);
+  if (!info) return fail(info.error());
+  Description out;
+  out.json = {{"kind", "design"}, {"elements", info->elementCount}, {"schema", info->schema}, {"crs", info->crs},
+              {"details", info->details}};
+  out.text = fmt::format("  elements  {}\n  schema    {}\n", info->elementCount, info->schema) + crsText(info->crs);
+  if (!info->details.empty()) out.text += fmt::format("  format    {}\n", info->details);
+  return out;
+}
+
+Result<Description> describe(const CameraReader& reader, const std::string& path) {
+  const auto set = reader.inspect(path);
+  if (!set) return fail(set.error());
+  Description out;
+  out.json = {{"kind", "cameras"}, {"cameras", Json::array()}, {"poses", set->pictures.size()}, {"details", set->details},
+              {"warnings", Json::array()}};
+  for (const auto& warning : set->warnings) out.json["warnings"].push_back(warning.what + " (" + warning.where + ")");
+  out.text = fmt::format("  poses     {}\n", set->pictures.size());
+  for (const Intrinsics& camera : set->cameras) {
+    const double foldBack = Camera(camera).foldBackRadius();
+    out.json["cameras"].push_back({{"model", cameraModelName(camera.model)}, {"width", camera.width},
+                                   {"height", camera.height}, {"parameters", camera.parameters()},
+                                   {"fold_back_radius", std::isfinite(foldBack) ? Json(foldBack) : Json(nullptr)}});
+    out.text += fmt::format("  camera    {} {} × {} px, f {:.2f} px", cameraModelName(camera.model), camera.width,
+                            camera.height, camera.fx);
+    out.text += std::isfinite(foldBack) ? fmt::format(", folds back at r = {:.3f}\n", foldBack) : "\n";
+  }
+  return out;
+}
+
+Result<Description> describe(const PictureReader& reader, const std::string& path) {
+  const auto set = reader.inspect(path);
+  if (!set) return fail(set.error());
+  Description out;
+  out.json = {{"kind", set->isVideo ? "video" : "pictures"}, {"pictures", set->pictures.size()}, {"width", set->width},
+              {"height", set->height}, {"frames_per_second", set->framesPerSecond}, {"details", set->details}};
+  out.text = fmt::format("  pictures  {}, {} × {} px\n", set->pictures.size(), set->width, set->height);
+  if (set->isVideo) out.text += fmt::format("  rate      {:.3f} Hz\n", set->framesPerSecond);
+  return out;
+}
+
+Result<Description> describe(const PointListReader& reader, const std::string& path) {
+  const auto list = reader.read(path);
+  if (!list) return fail(list.error());
+  Bounds bounds;
+  for (const auto& point : list->points) bounds.add(point.position);
+  Description out;
+  out.json = {{"kind", "points"}, {"points", list->points.size()}, {"bounds_m", boundsJson(bounds)}};
+  out.text = fmt::format("  points    {}\n", list->points.size()) + boundsText(bounds);
+  return out;
+}
+
+Result<Description> describeProject(const std::string& path) {
+  const auto project = loadProject(path);
+  if (!project) return fail(project.error());
+  std::size_t posed = 0;
+  for (const Frame& frame : project->frames) posed += frame.cameraFromWorld.has_value();
+  Description out;
+  out.json = {{"kind", "project"}, {"name", project->name}, {"crs", project->crs}, {"scans", project->scans.size()},
+              {"designs", project->designs.size()}, {"cameras", project->cameras.size()}, {"frames", project->frames.size()},
+              {"frames_with_pose", posed}, {"stake_points", project->stakePoints.size()},
+              {"control_points", project->controlPoints.size()}, {"annotations", project->annotations.size()},
+              {"source_problems", Json::array()}};
+  out.text = fmt::format("  project   {}\n  scans     {}\n  designs   {}\n  frames    {} ({} with a pose)\n", project->name,
+                         project->scans.size(), project->designs.size(), project->frames.size(), posed);
+  for (const SourceProblem& problem : checkSources(*project)) {
+    out.json["source_problems"].push_back(problem.path + " " + problem.what);
+    out.text += fmt::format("  problem   {} {}\n", problem.path, problem.what);
+  }
+  return out;
+}
+
+Result<Description> describeFile(const std::string& path) {
+  if (path.ends_with(".alidade")) return describeProject(path);
+  const auto reader = ReaderRegistry::instance().find(path);
+  if (!reader) return fail(reader.error());
+  auto described = [&]() -> Result<Description> {
+    switch ((*reader)->kind()) {
+      case ReaderKind::Scan: return describe(static_cast<const ScanReader&>(**reader), path);
+      case ReaderKind::Design: return describe(static_cast<const DesignReader&>(**reader), path);
+      case ReaderKind::Cameras: return describe(static_cast<const CameraReader&>(**reader), path);
+      case ReaderKind::Pictures: return describe(static_cast<const PictureReader&>(**reader), path);
+      case ReaderKind::Points: return describe(static_cast<const PointListReader&>(**reader), path);
+    }
+    return fail("The reader is of an unknown kind", path);
+  }();
+  if (described) described->json["reader"] = (*reader)->description().id;
+  return described;
+}
+
+}  // namespace
+
+void addInfo(Verbs& verbs) {
+  auto files = std::make_shared<std::vector<std::string>>();
+  CLI::App* command = verbs.add(
+      "info", "Say what files hold, from their headers alone", [files](const Progress&) -> Result<Answer> {
+        Answer answer;
+        answer.json = {{"files", Json::array()}};
+        for (const std::string& path : *files) {
+          auto described = describeFile(path);
+          Json entry = {{"path", path}};
+          if (described) {
+            entry.update(described->json);
+            answer.text += path + "\n" + described->text;
+          } else {
+            const Error& error = described.error();
+            entry["error"] = {{"what", error.what}, {"where", error.where}, {"advice", error.advice}};
+            answer.text += path + "\n  error     " + error.text() + "\n";
+            answer.failed = true;
+          }
+          answer.json["files"].push_back(std::move(entry));
+        }
+        return answer;
+      });
+  command->add_option("files", *files, "Scans, designs, cameras, pictures, stake-out lists, projects")->required();
+}
+
+}  // namespace alidade::cli

@@ -1,0 +1,67 @@
+// SPDX-FileCopyrightText: 2026 the Alidade authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include <filesystem>
+
+#include <fmt/format.h>
+
+#include "app/jobs.h"
+#include "cli/command.h"
+#include "io/project_store.h"
+
+namespace alidade::cli {
+
+void addNew(Verbs& verbs) {
+  struct Arguments {
+    std::string project;
+    NewProjectInputs inputs;
+    std::vector<std::string> files;
+    std::string name;
+  };
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = verbs.add(
+      "new", "Make a project of scans, designs, pictures and cameras",
+      [arguments](const Progress& progress) -> Result<Answer> {
+        auto made = newProject(arguments->inputs, progress);
+        if (!made) return fail(made.error());
+        if (!arguments->files.empty()) {
+          auto notes = std::move(made->notes);
+          made = addToProject(made->project, arguments->files, progress);
+          if (!made) return fail(made.error());
+          made->notes.insert(made->notes.begin(), notes.begin(), notes.end());
+        }
+        Project& project = made->project;
+        project.name = arguments->name.empty() ? std::filesystem::path(arguments->project).stem().string() : arguments->name;
+        if (auto saved = saveProject(project, arguments->project); !saved) return fail(saved.error());
+
+        std::size_t posed = 0;
+        for (const Frame& frame : project.frames) posed += frame.cameraFromWorld && frame.camera;
+        Answer answer;
+        answer.json = {{"project", arguments->project},
+                       {"scans", project.scans.size()},
+                       {"designs", project.designs.size()},
+                       {"cameras", project.cameras.size()},
+                       {"frames", project.frames.size()},
+                       {"frames_with_pose", posed},
+                       {"stake_points", project.stakePoints.size()},
+                       {"control_points", project.controlPoints.size()},
+                       {"notes", made->notes}};
+        answer.text = fmt::format("{}: {} scans, {} designs, {} frames ({} with a pose), {} stake-out points\n",
+                                  arguments->project, project.scans.size(), project.designs.size(), project.frames.size(),
+                                  posed, project.stakePoints.size());
+        for (const std::string& note : made->notes) answer.text += "  note: " + note + "\n";
+        return answer;
+      });
+  command->add_option("project", arguments->project, "Project file to write, *.alidade")->required();
+  command->add_option("--scan", arguments->inputs.scans, "Point clouds");
+  command->add_option("--design", arguments->inputs.designs, "IFC, OBJ, glTF, STL");
+  command->add_option("--images", arguments->inputs.images, "Folders of pictures, or pictures");
+  command->add_option("--video", arguments->inputs.videos, "Video files");
+  command->add_option("--cameras", arguments->inputs.cameras, "COLMAP models, calibrations, trajectories");
+  command->add_option("--stake", arguments->inputs.stakePoints, "Stake-out points, CSV");
+  command->add_option("--control", arguments->inputs.controlPoints, "Control points, CSV");
+  command->add_option("--files", arguments->files, "Anything of the above, told apart by content");
+  command->add_option("--name", arguments->name, "Name of the project");
+}
+
+}  // namespace alidade::cli
