@@ -13,6 +13,8 @@
 #include "base/error.h"
 #include "base/image.h"
 #include "camera/distortion.h"
+#include "camera/lens_domain.h"
+#include "camera/lens_kernel.h"
 
 namespace alidade {
 
@@ -103,11 +105,28 @@ class Camera {
   /// the pinhole (fx, fy, cx, cy) grown to cover the picture; 255 where the raw picture has a pixel.
   Image<unsigned char> undistortionMask(int width, int height) const;
 
+  /// The pinhole of undistortionMask(width, height): this camera's, scaled to that size, with focal
+  /// lengths shortened until everything that the picture sees within 80 degrees of the axis fits.
+  Intrinsics maskPinhole(int width, int height) const;
+
   /// The same lens on a picture of another size (0.5 px origins handled): "--size", thumbnails.
   Camera scaledTo(int width, int height) const;
 
+  /// The lens for `distort` of lens_kernel.h, and the domain where it maps one to one.
+  const Lens<double>& lens() const { return m_domain.lens(); }
+  const LensDomain& domain() const { return m_domain; }
+
  private:
+  glm::dvec2 normalized(const glm::dvec2& pixel) const {
+    return {(pixel.x - m_intrinsics.cx) / m_intrinsics.fx, (pixel.y - m_intrinsics.cy) / m_intrinsics.fy};
+  }
+  glm::dvec2 pixelOf(const glm::dvec2& distorted) const {
+    return {m_intrinsics.fx * distorted.x + m_intrinsics.cx, m_intrinsics.fy * distorted.y + m_intrinsics.cy};
+  }
+  double farthestSeenTowards(const glm::dvec2& pixel) const;
+
   Intrinsics m_intrinsics;
+  LensDomain m_domain;
   double m_foldBackRadius = 0;
   double m_imageRadius = 0;
 };
