@@ -8,6 +8,7 @@
 
 #include "app/jobs.h"
 #include "app/version.h"
+#include "inspect/hit.h"
 #include "io/picture_file.h"
 
 namespace alidade {
@@ -124,23 +125,14 @@ Result<void> exportPicture(const RenderedFrame& frame, const std::string& path, 
 CursorReadout readoutAt(const RenderedFrame& frame, const glm::dvec2& pixel) {
   CursorReadout readout;
   const DepthImage& depth = frame.picture.scanDepth;
-  const int x = static_cast<int>(std::lround(pixel.x)), y = static_cast<int>(std::lround(pixel.y));
-  if (depth.empty() || !depth.contains(x, y)) return readout;
-  const double z = depth.at(x, y);
-  if (!std::isfinite(z)) return readout;
+  if (depth.empty()) return readout;
   const Camera camera = frame.description.camera.scaledTo(depth.width(), depth.height());
-  const auto ray = camera.unproject(pixel);
-  if (!ray) return readout;
-  const glm::dvec3 inCamera = *ray * z;
-  readout.world = frame.description.cameraFromWorld.inverse() * inCamera;
-  readout.depthM = z;
-  readout.distanceM = glm::length(inCamera);
-  if (frame.poseQuality) {
-    const double position = glm::length(frame.poseQuality->positionStdM);
-    const double rotation = glm::length(frame.poseQuality->rotationStdRad) * readout.distanceM;
-    const double sampling = frame.scanSpacingM / std::sqrt(12.0);  // uniform within one spacing
-    readout.uncertaintyM = std::sqrt(position * position + rotation * rotation + sampling * sampling);
-  }
+  const auto hit = hitAt(depth, camera, frame.description.cameraFromWorld, pixel, {frame.poseQuality, frame.scanSpacingM});
+  if (!hit) return readout;
+  readout.world = hit->world;
+  readout.depthM = hit->depthM;
+  readout.distanceM = hit->distanceM;
+  readout.uncertaintyM = hit->sigmaM;
   return readout;
 }
 
