@@ -6,10 +6,29 @@
 #include <algorithm>
 #include <filesystem>
 
+#include <fmt/format.h>
+
 #include "las/las_header.h"
 #include "las/las_points.h"
 
 namespace alidade {
+
+namespace {
+
+/// What looks at the header alone trusts its bounds: say so where the points are not in them.
+void checkBounds(LasHeader& header, const Bounds& found) {
+  if (found.empty() || header.bounds.empty()) return;
+  const glm::dvec3 step = 1.01 * header.scale;
+  if (glm::any(glm::lessThan(found.min, header.bounds.min - step)) ||
+      glm::any(glm::greaterThan(found.max, header.bounds.max + step)))
+    header.warnings.push_back({fmt::format("Points lie outside the header's bounds: they span {:.3f} {:.3f} {:.3f} to "
+                                           "{:.3f} {:.3f} {:.3f}",
+                                           found.min.x, found.min.y, found.min.z, found.max.x, found.max.y,
+                                           found.max.z),
+                               "header offset 179"});
+}
+
+}  // namespace
 
 ReaderDescription LasReader::description() const {
   return {"las", "LAS point cloud", {"las", "laz"}};
@@ -60,6 +79,7 @@ Result<std::vector<ImportWarning>> LasReader::read(const std::string& path,
   std::vector<std::byte> bytes(std::min(batchSize, header->pointCount) * header->recordLength);
   const Progress reading = progress.part(0.1, 1.0);
   PointBatch batch;
+  Bounds found;
   for (std::uint64_t first = 0; first < header->pointCount; first += batchSize) {
     if (progress.cancelled()) return fail(cancelledError());
     reading.report(static_cast<double>(first) / static_cast<double>(header->pointCount), what);
@@ -68,8 +88,10 @@ Result<std::vector<ImportWarning>> LasReader::read(const std::string& path,
     if (auto ok = file->readAt(header->pointsOffset + first * header->recordLength, part); !ok)
       return fail(ok.error());
     decodeLasPoints(*header, part.data(), count, *unshifted, batch);
+    for (const auto& position : batch.position) found.add(position);
     if (!sink(batch)) break;
   }
+  checkBounds(*header, found);
   reading.report(1.0, what);
   return header->warnings;
 }
