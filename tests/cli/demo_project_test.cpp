@@ -1,0 +1,155 @@
+// SPDX-FileCopyrightText: 2026 the Alidade authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+#include "command_line.h"
+#include "io/picture_file.h"
+
+namespace alidade::test {
+
+namespace {
+
+std::string demoProject() {
+  return "\"" + (smallDemo() / "demo.alidade").string() + "\"";
+}
+
+}  // namespace
+
+TEST(CommandLine, MakesTheSampleInspectionAndSaysWhatItHolds) {
+  const auto info = alidadeCli("info --json " + demoProject());
+  ASSERT_EQ(info.exitCode, 0) << info.errors;
+  const auto file = info.json()["files"][0];
+  EXPECT_EQ(file["kind"], "project");
+  EXPECT_EQ(file["frames"], 4);
+  EXPECT_EQ(file["frames_with_pose"], 4);
+  EXPECT_EQ(file["scans"], 1);
+  EXPECT_EQ(file["designs"], 1);
+  EXPECT_GT(file["stake_points"], 0);
+  EXPECT_TRUE(file["source_problems"].empty());
+}
+
+TEST(CommandLine, DrawsAFrameWithItsTitleBlockAndTextChunks) {
+  const auto picture = scratch() / "overlay.png";
+  const auto outcome = alidadeCli("overlay --json " + demoProject() + " --frame 0 -o \"" + picture.string() + "\"");
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.errors;
+  const auto json = outcome.json();
+  EXPECT_EQ(json["width"], 480);
+  EXPECT_EQ(json["height"], 360);
+  EXPECT_GT(json["points_drawn"], 1000);
+  EXPECT_LE(json["points_drawn"], json["points_total"]);
+  EXPECT_LT(json["worst_error_px"], 0.1);
+  EXPECT_GT(json["elements"].size(), 3u);
+  const auto image = readPicture(picture.string());
+  ASSERT_TRUE(image);
+  EXPECT_EQ(image->width(), 480);
+  EXPECT_GT(image->height(), 360) << "the title block stands below the picture";
+  const auto text = readPngText(picture.string());
+  ASSERT_TRUE(text);
+  EXPECT_NE(text->at("Alidade:frame").find("1 of 4"), std::string::npos);
+}
+
+TEST(CommandLine, ABarePictureHasTheAskedSizeAndNothingElse) {
+  const auto picture = scratch() / "bare.png";
+  const auto outcome = alidadeCli("overlay " + demoProject() + " --frame 1 --size 240x180 --bare --hidden hide -o \"" +
+                                  picture.string() + "\"");
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.errors;
+  const auto image = readPicture(picture.string());
+  ASSERT_TRUE(image);
+  EXPECT_EQ(image->width(), 240);
+  EXPECT_EQ(image->height(), 180);
+}
+
+TEST(CommandLine, DensityDrawsFewerPointsAndNothingAtZero) {
+  std::uint64_t last = ~0ull;
+  for (const char* density : {"1", "0.5", "0.1", "0"}) {
+    const auto outcome = alidadeCli("overlay --json " + demoProject() + " --frame 0 --size 240x180 --density " + density +
+                                    " -o \"" + (scratch() / "density.png").string() + "\"");
+    ASSERT_EQ(outcome.exitCode, 0) << outcome.errors;
+    const std::uint64_t drawn = outcome.json()["points_drawn"];
+    EXPECT_LT(drawn, last);
+    last = drawn;
+  }
+  EXPECT_EQ(last, 0u);
+}
+
+TEST(CommandLine, RefinesAPoseFromObservationsAndRemembersIt) {
+  const auto observations = smallDemo() / "observations.csv";
+  ASSERT_TRUE(std::filesystem::exists(observations));
+  const std::string common =
+      "refine --json " + demoProject() + " --frame 0 --observations \"" + observations.string() + "\"";
+  const auto dry = alidadeCli(common + " --dry-run --at 2683500,1247800,412");
+  ASSERT_EQ(dry.exitCode, 0) << dry.errors << dry.output;
+  const auto json = dry.json();
+  EXPECT_TRUE(json["converged"]);
+  EXPECT_LT(json["rms_px"], 1.0);
+  EXPECT_EQ(json["position_std_m"].size(), 3u);
+  EXPECT_GT(json["expected_error_mm"], 0.0);
+  EXPECT_FALSE(json["saved"]);
+  const auto locked = alidadeCli(common + " --dry-run --lock position");
+  ASSERT_EQ(locked.exitCode, 0) << locked.errors;
+  EXPECT_EQ(locked.json()["position_std_m"][0], 0.0);
+}
+
+TEST(CommandLine, ADegenerateSetIsRefusedWithItsReasonAndTheProjectUnchanged) {
+  const auto observations = scratch() / "two.csv";
+  std::ofstream(observations) << "u,v,e,n,h\n100,100,2683500,1247800,412\n200,200,2683501,1247801,413\n";
+  const auto outcome = alidadeCli("refine --json " + demoProject() + " --frame 0 --observations \"" + observations.string() + "\"");
+  EXPECT_EQ(outcome.exitCode, 1);
+  EXPECT_FALSE(outcome.json()["converged"]);
+  EXPECT_FALSE(outcome.json()["reason"].get<std::string>().empty());
+  EXPECT_FALSE(outcome.json()["saved"]);
+}
+
+TEST(CommandLine, ProjectPointsAlwaysPrintsFourColumns) {
+  const auto outcome =
+      alidadeCli("project-points " + demoProject() + " --frame 0", "2683500 1247800 412\n0 0 0\nnan 1 2\n# note\n1,2,3\n");
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.errors;
+  std::istringstream lines(outcome.output);
+  int count = 0;
+  for (std::string line; std::getline(lines, line); ++count) {
+    std::istringstream cells(line);
+    std::string u, v, depth, state, extra;
+    ASSERT_TRUE(cells >> u >> v >> depth >> state) << line;
+    EXPECT_FALSE(cells >> extra) << line;
+  }
+  EXPECT_EQ(count, 4);
+}
+
+TEST(CommandLine, BadUsageIsTwoAndFailureIsOne) {
+  EXPECT_EQ(alidadeCli("").exitCode, 2);
+  EXPECT_EQ(alidadeCli("frobnicate").exitCode, 2);
+  EXPECT_EQ(alidadeCli("overlay").exitCode, 2);
+  EXPECT_EQ(alidadeCli("--help").exitCode, 0);
+  EXPECT_EQ(alidadeCli("demo \"" + (scratch() / "x").string() + "\" --points -5").exitCode, 2);
+  const auto missing = alidadeCli("overlay /nowhere/p.alidade --frame 0 -o \"" + (scratch() / "x.png").string() + "\"");
+  EXPECT_EQ(missing.exitCode, 1);
+  EXPECT_NE(missing.errors.find("/nowhere/p.alidade"), std::string::npos);
+  const auto frame = alidadeCli("overlay " + demoProject() + " --frame 99 -o \"" + (scratch() / "x.png").string() + "\"");
+  EXPECT_EQ(frame.exitCode, 1);
+  EXPECT_NE(frame.errors.find("99"), std::string::npos);
+}
+
+TEST(CommandLine, AFullDiskOnExportIsAClearErrorAndLeavesNoFile) {
+  const auto outcome = alidadeCli("overlay " + demoProject() + " --frame 0 --size 240x180 -o /dev/full");
+  EXPECT_EQ(outcome.exitCode, 1);
+  EXPECT_FALSE(outcome.errors.empty());
+}
+
+TEST(CommandLine, AMissingSourceIsNamed) {
+  const auto folder = scratch() / "moved";
+  std::filesystem::create_directories(folder);
+  std::filesystem::copy_file(smallDemo() / "demo.alidade", folder / "demo.alidade",
+                             std::filesystem::copy_options::overwrite_existing);
+  const auto info = alidadeCli("info --json \"" + (folder / "demo.alidade").string() + "\"");
+  EXPECT_FALSE(info.json()["files"][0]["source_problems"].empty());
+  const auto overlay =
+      alidadeCli("overlay \"" + (folder / "demo.alidade").string() + "\" --frame 0 -o \"" + (scratch() / "x.png").string() + "\"");
+  EXPECT_EQ(overlay.exitCode, 1);
+}
+
+}  // namespace alidade::test
