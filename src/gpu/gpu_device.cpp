@@ -136,9 +136,10 @@ Candidate examine(VkPhysicalDevice device) {
   vkGetPhysicalDeviceQueueFamilyProperties(device, &count, nullptr);
   std::vector<VkQueueFamilyProperties> families(count);
   vkGetPhysicalDeviceQueueFamilyProperties(device, &count, families.data());
-  static constexpr VkQueueFlags needed = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
-  const auto family = std::find_if(families.begin(), families.end(),
-                                   [](const auto& f) { return (f.queueFlags & needed) == needed; });
+  const auto drawsAndComputes = [](const VkQueueFamilyProperties& f) {
+    return (f.queueFlags & VK_QUEUE_GRAPHICS_BIT) && (f.queueFlags & VK_QUEUE_COMPUTE_BIT);
+  };
+  const auto family = std::find_if(families.begin(), families.end(), drawsAndComputes);
   if (family == families.end())
     candidate.missing = "a graphics queue";
   else

@@ -1,0 +1,10 @@
+#version 460
+// SPDX-FileCopyrightText: 2026 the Alidade authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// One triangle over the whole picture.
+
+void main() {
+  vec2 corner = vec2((gl_VertexIndex << 1) & 2, gl_VertexIndex & 2);
+  gl_Position = vec4(2.0 * corner - 1.0, 0.0, 1.0);
+}

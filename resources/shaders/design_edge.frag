@@ -1,0 +1,49 @@
+#version 460
+// SPDX-FileCopyrightText: 2026 the Alidade authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Coverage of design edges: the line in one channel, its light casing in the other, cut into dashes or
+// dots where the scan hides the edge or does not know. Blended by maximum, so that the
+// pieces of a bent edge join without a seam.
+
+#extension GL_GOOGLE_include_directive : require
+#include "overlay_frame.glsl"
+
+layout(set = 0, binding = 3) uniform sampler2D scanDepth;
+
+layout(location = 0) noperspective in float across;
+layout(location = 1) in float along;
+layout(location = 2) in float depth;
+layout(location = 3) flat in uint element;
+
+layout(location = 0) out vec2 outCover;
+layout(location = 1) out uint outElement;
+layout(location = 2) out float outDepth;
+
+// 1 on the drawn part of a dash of about `pixels`: metres doubled or halved to fit the distance, so that
+// dashes stay tied to the edge while the camera moves.
+float dashed(float pixels, float drawn) {
+  float metres = pixels * depth / frame.view.w;
+  float period = exp2(round(log2(max(metres, 1e-6))));
+  return fract(along / period) < drawn ? 1.0 : 0.0;
+}
+
+void main() {
+  uint state = stateOf(depth, texelFetch(scanDepth, ivec2(gl_FragCoord.xy), 0).r);
+  float strength = 1.0, casing = 0.55;
+  if (state == stateUnknown) {
+    strength = 0.9 * dashed(5.0 * frame.lines.z, 0.4);
+    casing = 0.5 * strength;
+  } else if (state == stateHidden) {
+    if (frame.scan.z == hiddenHide) discard;
+    bool ghost = frame.scan.z == hiddenGhost;
+    strength = ghost ? 0.3 : dashed(16.0 * frame.lines.z, 0.55);
+    casing = ghost ? 0.12 : 0.6 * strength;
+  }
+  float distance = abs(across);
+  outCover = vec2(strength * clamp(frame.lines.x + 0.5 - distance, 0.0, 1.0),
+                  casing * clamp(frame.lines.y + 0.5 - distance, 0.0, 1.0));
+  if (outCover.y <= 0.0) discard;
+  outElement = element;
+  outDepth = depth;
+}
