@@ -1,0 +1,60 @@
+// SPDX-FileCopyrightText: 2026 the Alidade authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#pragma once
+
+#include <cstdint>
+
+#include "camera/lens_kernel.h"
+
+namespace alidade {
+
+/// What a run of points of one node is drawn with. Floats, relative to the eye: the sums that lose
+/// digits were done in double when this was filled.
+struct SplatView {
+  float m[9];  ///< row by row: camera axes from node steps, metres a step
+  float t[3];  ///< the node's origin in the camera's frame, metres
+  Lens<float> lens;
+  float fx, fy, cx, cy;
+  float foldBackSquared;
+  int width, height;
+  /// Footprint in pixels: clamp(sizeTimesDepth / z, smallest, largest).
+  float sizeTimesDepth, smallest, largest;
+  bool onePixel;  ///< every footprint is one pixel
+  bool round;
+};
+
+/// What is kept beside the depth in a 64-bit pixel.
+enum class SplatPayload {
+  None,      ///< 32-bit pixels: depth alone
+  Index,     ///< payloadBase + the point's place in the run
+  Colour,    ///< the point's RGB565
+  Constant,  ///< payloadBase
+};
+
+/// One thread's pixels, width × height and one spare. Depth is a positive float's bits, which order
+/// as unsigned integers do; in 64-bit pixels it stands above the payload, so that the nearest wins
+/// and equal depths are settled by the payload, whatever the order of drawing.
+struct SplatTarget {
+  std::uint32_t* depth = nullptr;   ///< payload None
+  std::uint64_t* packed = nullptr;  ///< the others
+  SplatPayload payload = SplatPayload::None;
+  std::uint32_t payloadBase = 0;
+};
+
+struct SplatKernel {
+  const char* name;
+  /// `points` are DisplayPoints: x, y, z, rgb565, 16 bits each.
+  void (*draw)(const SplatView& view, const std::uint16_t* points, std::uint32_t count, const SplatTarget& target);
+};
+
+extern const SplatKernel kScalarSplatKernel;
+#if defined(__x86_64__)
+extern const SplatKernel kAvx2SplatKernel;
+extern const SplatKernel kAvx512SplatKernel;
+#endif
+
+/// The fastest that this processor runs, or the one that ALIDADE_SIMD names.
+const SplatKernel& splatKernel();
+
+}  // namespace alidade

@@ -1,0 +1,200 @@
+// SPDX-FileCopyrightText: 2026 the Alidade authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// The splat kernel, written once in GCC's vector extension and included by one .cpp for each
+// instruction set, which defines ALIDADE_SPLAT_LANES. Everything here has internal linkage.
+
+#include <cmath>
+#include <cstring>
+
+#include "raster/splat_kernel.h"
+
+namespace alidade {
+namespace {
+
+constexpr int kLanes = ALIDADE_SPLAT_LANES;
+typedef float Floats __attribute__((vector_size(4 * kLanes)));
+typedef std::int32_t Ints __attribute__((vector_size(4 * kLanes)));
+typedef std::uint32_t Words __attribute__((vector_size(4 * kLanes)));
+
+#if ALIDADE_SPLAT_LANES == 16
+#define ALIDADE_EVEN 0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30
+#define ALIDADE_ODD 1, 3, 5, 7, 9, 11, 13, 15, 17, 19, 21, 23, 25, 27, 29, 31
+constexpr Words kIota = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15};
+#elif ALIDADE_SPLAT_LANES == 8
+#define ALIDADE_EVEN 0, 2, 4, 6, 8, 10, 12, 14
+#define ALIDADE_ODD 1, 3, 5, 7, 9, 11, 13, 15
+constexpr Words kIota = {0, 1, 2, 3, 4, 5, 6, 7};
+#else
+#define ALIDADE_EVEN 0, 2, 4, 6
+#define ALIDADE_ODD 1, 3, 5, 7
+constexpr Words kIota = {0, 1, 2, 3};
+#endif
+
+struct Projected {
+  Floats u, v, z;
+  Ints valid;    ///< all ones where the lens holds and z > 0
+  Words colour;
+};
+
+template <LensKind kind>
+ALIDADE_LENS_INLINE Projected project(const SplatView& view, const std::uint16_t* points) {
+  Words first, second;
+  std::memcpy(&first, points, sizeof first);
+  std::memcpy(&second, points + 2 * kLanes, sizeof second);
+  const Words xy = __builtin_shufflevector(first, second, ALIDADE_EVEN);
+  const Words zc = __builtin_shufflevector(first, second, ALIDADE_ODD);
+  const Floats nx = __builtin_convertvector(Ints(xy & 0xffff), Floats);
+  const Floats ny = __builtin_convertvector(Ints(xy >> 16), Floats);
+  const Floats nz = __builtin_convertvector(Ints(zc & 0xffff), Floats);
+
+  const float* m = view.m;
+  const Floats px = (m[0] * nx + m[1] * ny) + (m[2] * nz + view.t[0]);
+  const Floats py = (m[3] * nx + m[4] * ny) + (m[5] * nz + view.t[1]);
+  const Floats pz = (m[6] * nx + m[7] * ny) + (m[8] * nz + view.t[2]);
+  const Floats inverse = 1.0f / pz;
+  const Floats x = px * inverse;
+  const Floats y = py * inverse;
+  Floats xd, yd;
+  distort<kind>(view.lens, x, y, xd, yd);
+
+  Projected p;
+  p.u = view.fx * xd + view.cx;
+  p.v = view.fy * yd + view.cy;
+  p.z = pz;
+  // NaN fails each comparison, so a point that goes wrong anywhere is left out.
+  p.valid = (pz > 1e-6f) & (x * x + y * y <= view.foldBackSquared);
+  p.colour = zc >> 16;
+  return p;
+}
+
+ALIDADE_LENS_INLINE Words payloadOf(const SplatTarget& target, std::uint32_t place, const Words& colour) {
+  switch (target.payload) {
+    case SplatPayload::Index: return kIota + (target.payloadBase + place);
+    case SplatPayload::Colour: return colour;
+    default: return (kIota & 0u) + target.payloadBase;
+  }
+}
+
+/// Nearest wins; one definition for both pixel types.
+template <class Pixel>
+ALIDADE_LENS_INLINE void put(Pixel* pixel, Pixel value) {
+  if (value < *pixel) *pixel = value;
+}
+
+template <bool packed>
+ALIDADE_LENS_INLINE void put(const SplatTarget& target, std::size_t at, std::uint32_t depth, std::uint32_t payload) {
+  if constexpr (packed) {
+    put(target.packed + at, static_cast<std::uint64_t>(depth) << 32 | payload);
+  } else {
+    put(target.depth + at, depth);
+  }
+}
+
+template <bool packed>
+ALIDADE_LENS_INLINE void drawPixels(const SplatView& view, const Projected& p, const SplatTarget& target,
+                                    std::uint32_t place) {
+  const Floats u = p.u + 0.5f, v = p.v + 0.5f;
+  const Ints inside = p.valid & (u >= 0.0f) & (u < static_cast<float>(view.width)) & (v >= 0.0f) &
+                      (v < static_cast<float>(view.height));
+  const Floats zero = {};
+  const Ints column = __builtin_convertvector(inside ? u : zero, Ints);
+  const Ints row = __builtin_convertvector(inside ? v : zero, Ints);
+  // What is not drawn goes to the spare pixel: no branch a lane.
+  const Ints spare = (column & 0) + view.width * view.height;
+  const Ints at = inside ? row * view.width + column : spare;
+  alignas(64) std::int32_t offset[kLanes];
+  alignas(64) std::uint32_t depth[kLanes];
+  std::memcpy(offset, &at, sizeof at);
+  std::memcpy(depth, &p.z, sizeof p.z);
+  if constexpr (packed) {
+    alignas(64) std::uint32_t payload[kLanes];
+    const Words words = payloadOf(target, place, p.colour);
+    std::memcpy(payload, &words, sizeof words);
+    for (int i = 0; i < kLanes; ++i) put<true>(target, offset[i], depth[i], payload[i]);
+  } else {
+    for (int i = 0; i < kLanes; ++i) put<false>(target, offset[i], depth[i], 0);
+  }
+}
+
+/// The pixels whose centres lie within `size` of the point: a square, or a disc within it.
+template <bool packed>
+void drawFootprint(const SplatView& view, float u, float v, float size, std::uint32_t depth, std::uint32_t payload,
+                   const SplatTarget& target) {
+  const float half = 0.5f * size;
+  const int left = static_cast<int>(std::floor(u - half)) + 1, right = static_cast<int>(std::floor(u + half));
+  const int top = static_cast<int>(std::floor(v - half)) + 1, bottom = static_cast<int>(std::floor(v + half));
+  const int x0 = left < 0 ? 0 : left, x1 = right < view.width ? right : view.width - 1;
+  const int y0 = top < 0 ? 0 : top, y1 = bottom < view.height ? bottom : view.height - 1;
+  // A disc of two pixels and less is its square, else it could miss every centre.
+  const float radiusSquared = view.round && size > 2.0f ? half * half : size * size;
+  for (int y = y0; y <= y1; ++y) {
+    const float dy = static_cast<float>(y) - v;
+    for (int x = x0; x <= x1; ++x) {
+      const float dx = static_cast<float>(x) - u;
+      if (dx * dx + dy * dy > radiusSquared) continue;
+      put<packed>(target, static_cast<std::size_t>(y) * view.width + x, depth, payload);
+    }
+  }
+}
+
+template <bool packed>
+ALIDADE_LENS_INLINE void drawFootprints(const SplatView& view, const Projected& p, const SplatTarget& target,
+                                        std::uint32_t place) {
+  const Floats zero = {};
+  const Floats wanted = view.sizeTimesDepth / p.z;
+  const Floats atMost = wanted < view.largest ? wanted : (zero + view.largest);
+  const Floats size = atMost > view.smallest ? atMost : (zero + view.smallest);
+  const Floats half = 0.5f * size;
+  const Ints reaches = p.valid & (p.u + half > -0.5f) & (p.u - half < view.width - 0.5f) & (p.v + half > -0.5f) &
+                       (p.v - half < view.height - 0.5f);
+  const Words payload = payloadOf(target, place, p.colour);
+  const Words depth = reinterpret_cast<Words>(p.z);
+  for (int i = 0; i < kLanes; ++i) {
+    if (reaches[i]) drawFootprint<packed>(view, p.u[i], p.v[i], size[i], depth[i], payload[i], target);
+  }
+}
+
+template <LensKind kind, bool packed, bool onePixel>
+void drawRun(const SplatView& view, const std::uint16_t* points, std::uint32_t count, const SplatTarget& target) {
+  const auto drawLanes = [&](const Projected& p, std::uint32_t place) __attribute__((always_inline)) {
+    if constexpr (onePixel) {
+      drawPixels<packed>(view, p, target, place);
+    } else {
+      drawFootprints<packed>(view, p, target, place);
+    }
+  };
+  std::uint32_t place = 0;
+  for (; place + kLanes <= count; place += kLanes) {
+    __builtin_prefetch(points + 4 * (place + 16 * kLanes));
+    drawLanes(project<kind>(view, points + 4 * place), place);
+  }
+  if (place == count) return;
+  std::uint16_t rest[4 * kLanes] = {};
+  std::memcpy(rest, points + 4 * place, (count - place) * 4 * sizeof(std::uint16_t));
+  Projected p = project<kind>(view, rest);
+  p.valid &= kIota < (count - place);
+  drawLanes(p, place);
+}
+
+template <LensKind kind>
+void drawKind(const SplatView& view, const std::uint16_t* points, std::uint32_t count, const SplatTarget& target) {
+  if (target.payload == SplatPayload::None) {
+    (view.onePixel ? drawRun<kind, false, true> : drawRun<kind, false, false>)(view, points, count, target);
+  } else {
+    (view.onePixel ? drawRun<kind, true, true> : drawRun<kind, true, false>)(view, points, count, target);
+  }
+}
+
+void draw(const SplatView& view, const std::uint16_t* points, std::uint32_t count, const SplatTarget& target) {
+  switch (view.lens.kind) {
+    case LensKind::None: return drawKind<LensKind::None>(view, points, count, target);
+    case LensKind::Radial: return drawKind<LensKind::Radial>(view, points, count, target);
+    case LensKind::Brown: return drawKind<LensKind::Brown>(view, points, count, target);
+    case LensKind::Full: return drawKind<LensKind::Full>(view, points, count, target);
+    case LensKind::Fisheye: return drawKind<LensKind::Fisheye>(view, points, count, target);
+  }
+}
+
+}  // namespace
+}  // namespace alidade

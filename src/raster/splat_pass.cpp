@@ -1,0 +1,182 @@
+// SPDX-FileCopyrightText: 2026 the Alidade authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "raster/splat_pass.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <memory>
+#include <mutex>
+#include <new>
+
+#include "base/parallel.h"
+
+namespace alidade {
+
+namespace {
+
+constexpr std::size_t kAlignment = 128;
+constexpr std::uint32_t kPointsPerTask = 16384;
+constexpr std::size_t kPixelsPerBand = 1 << 16;
+
+/// Blocks of past frames, a few of them; two frames of one size need no allocation.
+class ScratchPool {
+ public:
+  static ScratchPool& instance() {
+    static ScratchPool pool;
+    return pool;
+  }
+
+  void* take(std::size_t bytes) {
+    {
+      std::lock_guard lock(m_mutex);
+      const auto found = std::find_if(m_free.begin(), m_free.end(), [&](const Block& b) { return b.bytes == bytes; });
+      if (found != m_free.end()) {
+        void* data = found->data;
+        m_free.erase(found);
+        return data;
+      }
+    }
+    return ::operator new(bytes, std::align_val_t(kAlignment));
+  }
+
+  void giveBack(void* data, std::size_t bytes) {
+    std::lock_guard lock(m_mutex);
+    m_free.push_back({data, bytes});
+    if (m_free.size() <= kKept) return;
+    ::operator delete(m_free.front().data, std::align_val_t(kAlignment));
+    m_free.erase(m_free.begin());
+  }
+
+ private:
+  struct Block {
+    void* data;
+    std::size_t bytes;
+  };
+  static constexpr std::size_t kKept = 24;
+
+  ~ScratchPool() {
+    for (const Block& block : m_free) ::operator delete(block.data, std::align_val_t(kAlignment));
+  }
+
+  std::mutex m_mutex;
+  std::vector<Block> m_free;
+};
+
+struct Task {
+  std::uint32_t run;
+  std::uint32_t first;
+  std::uint32_t count;
+};
+
+std::vector<Task> tasksOf(std::span<const SplatRun> runs) {
+  std::vector<Task> tasks;
+  for (std::uint32_t r = 0; r < runs.size(); ++r) {
+    for (std::uint32_t first = 0; first < runs[r].count; first += std::min(kPointsPerTask, runs[r].count - first)) {
+      tasks.push_back({r, first, std::min(kPointsPerTask, runs[r].count - first)});
+    }
+  }
+  return tasks;
+}
+
+template <class Pixel>
+void drawPlanes(std::span<const SplatRun> runs, int width, int height, SplatPayload payload,
+                const std::function<void(const SplatPlanes<Pixel>&, std::size_t, std::size_t)>& merge) {
+  const SplatKernel& kernel = splatKernel();
+  const std::size_t pixels = static_cast<std::size_t>(width) * height;
+  const std::size_t bytes = (pixels + 1) * sizeof(Pixel);
+  std::vector<std::unique_ptr<SplatScratch>> scratch(workerCount());
+  const std::vector<Task> tasks = tasksOf(runs);
+  parallelFor(tasks.size(), 1, [&](std::size_t first, std::size_t last, int worker) {
+    if (!scratch[worker]) {
+      scratch[worker] = std::make_unique<SplatScratch>(bytes);
+      std::memset(scratch[worker]->data(), 0xff, bytes);
+    }
+    SplatTarget target;
+    target.payload = payload;
+    if constexpr (sizeof(Pixel) == 4) {
+      target.depth = static_cast<Pixel*>(scratch[worker]->data());
+    } else {
+      target.packed = static_cast<Pixel*>(scratch[worker]->data());
+    }
+    for (std::size_t i = first; i < last; ++i) {
+      const SplatRun& run = runs[tasks[i].run];
+      target.payloadBase = run.payloadBase + (payload == SplatPayload::Index ? tasks[i].first : 0);
+      kernel.draw(run.view, &run.points[tasks[i].first].x, tasks[i].count, target);
+    }
+  });
+  SplatPlanes<Pixel> planes;
+  for (const auto& block : scratch) {
+    if (block) planes.planes.push_back(static_cast<const Pixel*>(block->data()));
+  }
+  parallelFor(pixels, kPixelsPerBand, [&](std::size_t first, std::size_t last, int) { merge(planes, first, last); });
+}
+
+/// Smallest depth that a point of the box can have, metres; 0 where the box reaches the eye's plane.
+double nearestDepth(const Bounds& bounds, const glm::dmat3& rotation, const glm::dvec3& translation) {
+  const glm::dvec3 axis(rotation[0][2], rotation[1][2], rotation[2][2]);
+  const double centre = glm::dot(axis, bounds.centre()) + translation.z;
+  return std::max(0.0, centre - glm::dot(glm::abs(axis), 0.5 * bounds.size()));
+}
+
+}  // namespace
+
+SplatScratch::SplatScratch(std::size_t bytes) : m_data(ScratchPool::instance().take(bytes)), m_bytes(bytes) {}
+
+SplatScratch::~SplatScratch() {
+  ScratchPool::instance().giveBack(m_data, m_bytes);
+}
+
+SplatView baseView(const Camera& camera, const SplatOptions& options) {
+  const Intrinsics& in = camera.intrinsics();
+  SplatView view{};
+  view.lens = Lens<float>(in.distortion.cast<float>());
+  view.fx = static_cast<float>(in.fx);
+  view.fy = static_cast<float>(in.fy);
+  view.cx = static_cast<float>(in.cx);
+  view.cy = static_cast<float>(in.cy);
+  view.foldBackSquared = static_cast<float>(camera.foldBackRadius() * camera.foldBackRadius());
+  view.width = camera.width();
+  view.height = camera.height();
+  view.round = options.round;
+  view.smallest = static_cast<float>(std::max(1.0, options.fixedSize ? options.pointSize : options.minimumSizePx));
+  view.largest = static_cast<float>(std::max<double>(view.smallest, options.fixedSize ? 1.0 : options.maximumSizePx));
+  return view;
+}
+
+SplatRun makeRun(const PointStore& store, const SelectedRange& range, const RigidTransform& cameraFromWorld,
+                 const SplatView& base, const SplatOptions& options) {
+  const CloudNode& node = store.nodes()[range.node];
+  const glm::dmat3 rotation = cameraFromWorld.rotationMatrix();
+  // Eye first, then rotate: the large coordinates cancel before anything is multiplied by them.
+  const glm::dvec3 origin = rotation * (node.origin - cameraFromWorld.centre());
+  SplatRun run;
+  run.points = store.points().data() + range.first;
+  run.count = range.count;
+  run.view = base;
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      run.view.m[3 * row + column] = static_cast<float>(rotation[column][row] * node.step);
+    }
+    run.view.t[row] = static_cast<float>(origin[row]);
+  }
+  const double focal = std::sqrt(std::abs(static_cast<double>(base.fx) * base.fy));
+  const double sizeTimesDepth = options.fixedSize ? 0.0 : options.pointSize * range.spacing * focal;
+  run.view.sizeTimesDepth = static_cast<float>(sizeTimesDepth);
+  const double nearest = nearestDepth(node.bounds, rotation, cameraFromWorld.translation);
+  run.view.onePixel = base.largest <= 1.0f || (base.smallest <= 1.0f && sizeTimesDepth <= nearest);
+  return run;
+}
+
+void drawRuns(std::span<const SplatRun> runs, int width, int height, SplatPayload payload,
+              const std::function<void(const SplatPlanes<std::uint32_t>&, std::size_t, std::size_t)>& mergeDepth,
+              const std::function<void(const SplatPlanes<std::uint64_t>&, std::size_t, std::size_t)>& mergePacked) {
+  if (payload == SplatPayload::None) {
+    drawPlanes<std::uint32_t>(runs, width, height, payload, mergeDepth);
+  } else {
+    drawPlanes<std::uint64_t>(runs, width, height, payload, mergePacked);
+  }
+}
+
+}  // namespace alidade

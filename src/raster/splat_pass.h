@@ -1,0 +1,70 @@
+// SPDX-FileCopyrightText: 2026 the Alidade authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "camera/camera.h"
+#include "geometry/rigid_transform.h"
+#include "raster/splat_kernel.h"
+#include "raster/splatter.h"
+
+namespace alidade {
+
+/// A 128-byte aligned block of pixels that is handed back for the next frame: first touch of fresh
+/// memory costs more than drawing into it.
+class SplatScratch {
+ public:
+  explicit SplatScratch(std::size_t bytes);
+  ~SplatScratch();
+  SplatScratch(const SplatScratch&) = delete;
+  SplatScratch& operator=(const SplatScratch&) = delete;
+
+  void* data() const { return m_data; }
+
+ private:
+  void* m_data = nullptr;
+  std::size_t m_bytes = 0;
+};
+
+/// One selected range ready to draw.
+struct SplatRun {
+  const DisplayPoint* points = nullptr;
+  std::uint32_t count = 0;
+  std::uint32_t payloadBase = 0;
+  SplatView view;
+};
+
+/// A part of the picture as the threads left it: pixel i of thread k is planes[k][i]. All ones where
+/// nothing was drawn.
+template <class Pixel>
+struct SplatPlanes {
+  std::vector<const Pixel*> planes;
+
+  Pixel nearest(std::size_t pixel) const {
+    Pixel value = static_cast<Pixel>(-1);
+    for (const Pixel* plane : planes) value = plane[pixel] < value ? plane[pixel] : value;
+    return value;
+  }
+};
+
+/// The camera's and the footprint's part of the view; runs of one node add m, t and the size.
+SplatView baseView(const Camera& camera, const SplatOptions& options);
+
+/// The range's points, seen by the camera: the double sums of origin and pose done here.
+SplatRun makeRun(const PointStore& store, const SelectedRange& range, const RigidTransform& cameraFromWorld,
+                 const SplatView& base, const SplatOptions& options);
+
+/// Draws the runs on all cores, one private plane a thread, then hands the planes to `merge` for
+/// bands of pixels [first, last), on all cores too. payload None draws 32-bit pixels and calls the
+/// first; anything else 64-bit ones and the second.
+void drawRuns(std::span<const SplatRun> runs, int width, int height, SplatPayload payload,
+              const std::function<void(const SplatPlanes<std::uint32_t>&, std::size_t, std::size_t)>& mergeDepth,
+              const std::function<void(const SplatPlanes<std::uint64_t>&, std::size_t, std::size_t)>& mergePacked);
+
+}  // namespace alidade
