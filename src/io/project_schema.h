@@ -1,0 +1,20 @@
+// SPDX-FileCopyrightText: 2026 the Alidade authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace alidade {
+
+/// resources/schemas/project.sql.
+extern const std::string_view kProjectSchema;
+
+/// Raise it with every change of the schema.
+inline constexpr std::uint32_t kProjectVersion = 1;
+
+/// SQLite's application_id: "ALID".
+inline constexpr std::uint32_t kProjectApplicationId = 0x414c4944;
+
+}  // namespace alidade
