@@ -82,11 +82,34 @@ Distortion radialPart(const Distortion& d) {
   return radial;
 }
 
+Distortion flatPart(Distortion d) {
+  d.tauX = d.tauY = 0;
+  return d;
+}
+
 bool hasOnlyRadialTerms(const Distortion& d) {
   if (d.fisheye) return true;
   bool other = d.p1 != 0 || d.p2 != 0 || d.shear != 0 || d.skew != 0 || d.tauX != 0 || d.tauY != 0;
   for (const double c : d.s) other = other || c != 0;
   return !other;
+}
+
+/// Golden section for a minimum of f in (low, high).
+template <class F>
+double lowestBetween(const F& f, double low, double high) {
+  const double golden = 0.5 * (std::sqrt(5.0) - 1);
+  double a = high - golden * (high - low), b = low + golden * (high - low);
+  double fa = f(a), fb = f(b);
+  for (int i = 0; i < 24; ++i) {
+    if (fa < fb) {
+      high = b, b = a, fb = fa;
+      a = high - golden * (high - low), fa = f(a);
+    } else {
+      low = a, a = b, fa = fb;
+      b = low + golden * (high - low), fb = f(b);
+    }
+  }
+  return fa < fb ? a : b;
 }
 
 }  // namespace
@@ -97,34 +120,53 @@ std::optional<double> firstSignChange(const std::vector<double>& coefficients, d
 }
 
 LensDomain::LensDomain(const Distortion& distortion)
-    : m_lens(distortion), m_radial(radialPart(distortion)), m_radialLimit(radialLimitOf(distortion)),
-      m_foldBackRadius(m_radialLimit) {
-  if (hasOnlyRadialTerms(distortion)) return;
-  std::vector<double> limits(rayCount);
-  for (int i = 0; i < rayCount; ++i) limits[i] = limitAlong(2 * std::numbers::pi * i / rayCount);
-  m_rayLimits = std::move(limits);
+    : m_lens(distortion), m_flat(flatPart(distortion)), m_radial(radialPart(distortion)),
+      m_radialLimit(radialLimitOf(distortion)), m_foldBackRadius(m_radialLimit),
+      m_bent(!hasOnlyRadialTerms(distortion)) {
+  if (!m_bent) return;
+  m_rayLimits.resize(rayCount);
+  for (int i = 0; i < rayCount; ++i) m_rayLimits[i] = limitAlong(2 * std::numbers::pi * i / rayCount);
   m_foldBackRadius = *std::max_element(m_rayLimits.begin(), m_rayLimits.end());
 }
 
+double LensDomain::orientation(double x, double y) const {
+  // Behind the tilt's vanishing line the point is seen upside down, whatever the determinant says.
+  const DistortedPoint flat = jacobianOf(m_flat, {x, y});
+  if (m_lens.tilted) {
+    const auto& m = m_lens.tilt;
+    if (!(m[6] * flat.position.x + m[7] * flat.position.y + m[8] > 0)) return -1;
+  }
+  return flat.determinant();
+}
+
 double LensDomain::limitAlong(double angleRad) const {
-  if (purelyRadial() && hasOnlyRadialTerms(m_lens.d)) return m_radialLimit;
+  if (!m_bent) return m_radialLimit;
   const double c = std::cos(angleRad), s = std::sin(angleRad);
-  const auto good = [&](double r) { return distortedWithJacobian(r * c, r * s).determinant() > 0; };
+  const auto at = [&](double r) { return orientation(r * c, r * s); };
   const double last = std::atan(std::min(m_radialLimit, farthestRadius));
-  double low = 0;
-  for (int i = 0; i <= samplesPerRay; ++i) {
-    // Just inside the radial limit, where a pole would give no number.
-    const double r = i < samplesPerRay ? std::tan(last * i / samplesPerRay) : std::tan(last) * (1 - 1e-9);
-    if (good(r)) {
-      low = r;
-      continue;
-    }
-    double high = r;
+  // Just inside the radial limit, where a pole would give no number.
+  const auto sample = [&](int i) {
+    return i < samplesPerRay ? std::tan(last * i / samplesPerRay) : std::tan(last) * (1 - 1e-9);
+  };
+  const auto border = [&](double good, double bad) {
     for (int step = 0; step < 60; ++step) {
-      const double middle = 0.5 * (low + high);
-      (good(middle) ? low : high) = middle;
+      const double middle = 0.5 * (good + bad);
+      (at(middle) > 0 ? good : bad) = middle;
     }
-    return low;
+    return good;
+  };
+  double before = 0, valueBefore = at(0);
+  if (!(valueBefore > 0)) return 0;
+  double r = sample(1), value = at(r);
+  for (int i = 1; i <= samplesPerRay; ++i) {
+    if (!(value > 0)) return border(before, r);
+    const double next = i < samplesPerRay ? sample(i + 1) : r;
+    const double valueNext = i < samplesPerRay ? at(next) : value;
+    // A dip between samples may reach below zero and come back.
+    if (value <= valueBefore && value < valueNext)
+      if (const double dip = lowestBetween(at, before, next); !(at(dip) > 0)) return border(before, dip);
+    before = r, valueBefore = value;
+    r = next, value = valueNext;
   }
   return m_radialLimit;
 }
@@ -132,7 +174,7 @@ double LensDomain::limitAlong(double angleRad) const {
 bool LensDomain::contains(double x, double y) const {
   const double r2 = x * x + y * y;
   if (!(r2 <= m_foldBackRadius * m_foldBackRadius) || !std::isfinite(r2)) return false;
-  if (purelyRadial()) return true;
+  if (!m_bent) return true;
   const double r = std::sqrt(r2);
   const double turn = std::atan2(y, x) / (2 * std::numbers::pi);
   const int bin = static_cast<int>(std::floor((turn - std::floor(turn)) * rayCount));
@@ -144,8 +186,10 @@ bool LensDomain::contains(double x, double y) const {
   }
   if (r < 0.9 * low) return true;
   if (r > 1.1 * high) return false;
-  // Near the border the determinant itself is exact; far beyond it could be positive again.
-  return distortedWithJacobian(x, y).determinant() > 0;
+  // Near a smooth border the determinant itself is exact; where the border jumps, beyond it the
+  // determinant could be positive again.
+  if (high < 1.2 * low) return orientation(x, y) > 0;
+  return r <= limitAlong(std::atan2(y, x));
 }
 
 glm::dvec2 LensDomain::distorted(double x, double y) const {
@@ -155,8 +199,12 @@ glm::dvec2 LensDomain::distorted(double x, double y) const {
 }
 
 DistortedPoint LensDomain::distortedWithJacobian(double x, double y) const {
+  return jacobianOf(m_lens, {x, y});
+}
+
+DistortedPoint LensDomain::jacobianOf(const Lens<double>& lens, const glm::dvec2& p) {
   Dual2 xd, yd;
-  distort(m_lens, Dual2{x, 1, 0}, Dual2{y, 0, 1}, xd, yd);
+  distort(lens, Dual2{p.x, 1, 0}, Dual2{p.y, 0, 1}, xd, yd);
   return {{xd.value, yd.value}, {xd.dx, yd.dx}, {xd.dy, yd.dy}};
 }
 

@@ -50,21 +50,25 @@ class LensDomain {
   DistortedPoint distortedWithJacobian(double x, double y) const;
 
   /// The point of the domain that the lens moves to `distorted`; nothing where there is none. The
-  /// residual |distort(result) - distorted| is below 1e-12 (1 + |distorted|).
+  /// residual |distort(result) - distorted| is below 1e-12 (1 + |distorted|) before the sensor's tilt.
   std::optional<glm::dvec2> undistorted(const glm::dvec2& distorted) const;
 
  private:
-  bool purelyRadial() const { return m_rayLimits.empty(); }
+  static DistortedPoint jacobianOf(const Lens<double>& lens, const glm::dvec2& p);
+  double orientation(double x, double y) const;
   std::optional<double> inverseRadius(double distortedRadius) const;
-  glm::dvec2 startFor(const glm::dvec2& distorted) const;
+  std::optional<glm::dvec2> withoutTilt(const glm::dvec2& distorted) const;
+  glm::dvec2 startFor(const glm::dvec2& flat) const;
   std::optional<glm::dvec2> descend(glm::dvec2 p, const glm::dvec2& target) const;
-  std::optional<glm::dvec2> continued(const glm::dvec2& target) const;
+  std::optional<glm::dvec2> continued(glm::dvec2 p, const glm::dvec2& target) const;
 
   Lens<double> m_lens;
+  Lens<double> m_flat;              ///< without the sensor's tilt
   Lens<double> m_radial;            ///< the radial factor alone
   double m_radialLimit = std::numeric_limits<double>::infinity();
   double m_foldBackRadius = std::numeric_limits<double>::infinity();
-  std::vector<double> m_rayLimits;  ///< by equal steps of angle; empty for a purely radial lens
+  bool m_bent = false;              ///< has more than a radial factor: the domain is no circle
+  std::vector<double> m_rayLimits;  ///< of a bent lens, by equal steps of angle
 };
 
 /// The first u in (0, upper] where the polynomial changes sign; nothing where it does not.

@@ -50,15 +50,18 @@ std::optional<double> LensDomain::inverseRadius(double distortedRadius) const {
   return r;
 }
 
-/// Undoes the tilt exactly and the radial factor by its one-dimensional inverse.
-glm::dvec2 LensDomain::startFor(const glm::dvec2& distorted) const {
-  glm::dvec2 flat = distorted;
-  if (m_lens.tilted) {
-    const auto& m = m_lens.tilt;
-    const glm::dmat3 tilt(m[0], m[3], m[6], m[1], m[4], m[7], m[2], m[5], m[8]);
-    const glm::dvec3 back = glm::inverse(tilt) * glm::dvec3(distorted, 1);
-    if (back.z > 0) flat = glm::dvec2(back) / back.z;
-  }
+/// The sensor's tilt is a homography, undone exactly.
+std::optional<glm::dvec2> LensDomain::withoutTilt(const glm::dvec2& distorted) const {
+  if (!m_lens.tilted) return distorted;
+  const auto& m = m_lens.tilt;
+  const glm::dmat3 tilt(m[0], m[3], m[6], m[1], m[4], m[7], m[2], m[5], m[8]);
+  const glm::dvec3 back = glm::inverse(tilt) * glm::dvec3(distorted, 1);
+  if (!(back.z > 0)) return std::nullopt;
+  return glm::dvec2(back) / back.z;
+}
+
+/// The radial factor undone alone, then drawn towards the axis until it lies in the domain.
+glm::dvec2 LensDomain::startFor(const glm::dvec2& flat) const {
   const double distortedRadius = glm::length(flat);
   if (!(distortedRadius > 0)) return flat;
   const double fallback = std::min(m_radialLimit * 0.98, farthestRadius);
@@ -69,7 +72,7 @@ glm::dvec2 LensDomain::startFor(const glm::dvec2& distorted) const {
 
 /// Damped Newton from p: a step is halved until it stays in the domain and comes closer.
 std::optional<glm::dvec2> LensDomain::descend(glm::dvec2 p, const glm::dvec2& target) const {
-  DistortedPoint at = distortedWithJacobian(p.x, p.y);
+  DistortedPoint at = jacobianOf(m_flat, p);
   double error = glm::length(at.position - target);
   for (int i = 0; i < 100 && error > 0; ++i) {
     const glm::dvec2 f = target - at.position;
@@ -81,7 +84,7 @@ std::optional<glm::dvec2> LensDomain::descend(glm::dvec2 p, const glm::dvec2& ta
       const glm::dvec2 next = p + share * step;
       if (next == p) break;
       if (!contains(next.x, next.y)) continue;
-      const DistortedPoint there = distortedWithJacobian(next.x, next.y);
+      const DistortedPoint there = jacobianOf(m_flat, next);
       const double nextError = glm::length(there.position - target);
       if (!(nextError < error)) continue;
       closer = true;
@@ -93,15 +96,21 @@ std::optional<glm::dvec2> LensDomain::descend(glm::dvec2 p, const glm::dvec2& ta
   return p;
 }
 
-/// Follows the inverse from the picture's centre, where it is known, along the straight line to the target.
-std::optional<glm::dvec2> LensDomain::continued(const glm::dvec2& target) const {
-  const glm::dvec2 origin = distorted(0, 0);
-  glm::dvec2 p(0);
-  constexpr int steps = 16;
-  for (int i = 1; i <= steps; ++i) {
-    const auto next = descend(p, glm::mix(origin, target, static_cast<double>(i) / steps));
-    if (!next) return std::nullopt;
-    p = *next;
+/// Follows the inverse from p, where it is known, along the straight line to the target, in steps as
+/// long as Newton's method bears.
+std::optional<glm::dvec2> LensDomain::continued(glm::dvec2 p, const glm::dvec2& target) const {
+  const glm::dvec2 origin = jacobianOf(m_flat, p).position;
+  double done = 0, step = 0.25;
+  while (done < 1) {
+    const double reach = std::min(1.0, done + step);
+    if (const auto next = descend(p, glm::mix(origin, target, reach))) {
+      p = *next;
+      done = reach;
+      step *= 2;
+    } else {
+      step *= 0.5;
+      if (step < 1e-3) return std::nullopt;
+    }
   }
   return p;
 }
@@ -109,15 +118,19 @@ std::optional<glm::dvec2> LensDomain::continued(const glm::dvec2& target) const 
 std::optional<glm::dvec2> LensDomain::undistorted(const glm::dvec2& distorted) const {
   if (!std::isfinite(distorted.x) || !std::isfinite(distorted.y)) return std::nullopt;
   if (m_lens.kind == LensKind::None) return distorted;
-  if (purelyRadial()) {
+  if (!m_bent) {
     const double distortedRadius = glm::length(distorted);
     if (distortedRadius == 0) return glm::dvec2(0);
     const auto r = inverseRadius(distortedRadius);
     if (!r) return std::nullopt;
     return distorted * (*r / distortedRadius);
   }
-  if (const auto p = descend(startFor(distorted), distorted)) return p;
-  return continued(distorted);
+  const auto flat = withoutTilt(distorted);
+  if (!flat) return std::nullopt;
+  const glm::dvec2 start = startFor(*flat);
+  if (const auto p = descend(start, *flat)) return p;
+  if (const auto p = continued(start, *flat)) return p;
+  return continued(glm::dvec2(0), *flat);
 }
 
 }  // namespace alidade
