@@ -107,7 +107,7 @@ Intrinsics Camera::maskPinhole(int width, int height) const {
   // to the horizon: the mask stops at 80 degrees.
   const double widest = std::tan(80 * std::numbers::pi / 180);
   double factor = 1;
-  for (const glm::dvec2& pixel : borderOf(m_intrinsics, 64)) {
+  for (const glm::dvec2& pixel : borderOf(m_intrinsics, 512)) {
     const glm::dvec2 d = normalized(pixel);
     const double length = glm::length(d);
     if (!(length > 0)) continue;

@@ -19,7 +19,7 @@ inline Dual2 operator*(const Dual2& a, const Dual2& b) {
   return {a.value * b.value, a.dx * b.value + a.value * b.dx, a.dy * b.value + a.value * b.dy};
 }
 inline Dual2 operator/(const Dual2& a, const Dual2& b) {
-  const double inverse = 1.0 / b.value, ratio = a.value * inverse;
+  const double inverse = 1.0 / b.value, ratio = a.value / b.value;
   return {ratio, (a.dx - ratio * b.dx) * inverse, (a.dy - ratio * b.dy) * inverse};
 }
 inline Dual2 operator+(double a, const Dual2& b) { return {a + b.value, b.dx, b.dy}; }
