@@ -88,7 +88,7 @@ void main() {
   if (cover.y > 0.0) {
     uint owner = texelFetch(edgeElement, at, 0).r;
     colour = overEdge(colour, cover, owner);
-    if (element == 0u && styles[owner - 1u].flags.y != 0u && cover.x > 0.0) {
+    if (element == 0u && styles[owner - 1u].flags.y != 0u) {
       element = owner;
       depth = texelFetch(edgeDepth, at, 0).r;
       state = stateOf(depth, scanned);

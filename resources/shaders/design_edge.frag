@@ -35,12 +35,14 @@ void main() {
     strength = 0.9 * dashed(5.0 * frame.lines.z, 0.4);
     casing = 0.5 * strength;
   } else if (state == stateHidden) {
-    if (frame.scan.z == hiddenHide) discard;
-    bool ghost = frame.scan.z == hiddenGhost;
-    strength = ghost ? 0.3 : dashed(16.0 * frame.lines.z, 0.55);
-    casing = ghost ? 0.12 : 0.6 * strength;
+    if (frame.scan.z == hiddenDash) strength = dashed(16.0 * frame.lines.z, 0.55);
+    if (frame.scan.z == hiddenGhost) strength = 0.3;
+    if (frame.scan.z == hiddenHide) strength = 0.0;
+    casing = 0.5 * strength;
   }
   float distance = abs(across);
+  // A trace stays where nothing is drawn, so that what has edges alone can still be picked and counted.
+  casing = max(casing, 0.005);
   outCover = vec2(strength * clamp(frame.lines.x + 0.5 - distance, 0.0, 1.0),
                   casing * clamp(frame.lines.y + 0.5 - distance, 0.0, 1.0));
   if (outCover.y <= 0.0) discard;

@@ -32,6 +32,7 @@ struct EdgeVertex {
 struct ElementStyle {
   glm::vec4 colour{0.8f, 0.8f, 0.8f, 1.0f};  ///< a: opacity of visible faces
   std::uint32_t selected = 0;
+  std::uint32_t edgesAlone = 0;  ///< 1 where it has no faces, so that its edges carry its pixels
 };
 
 /// What a device draws: subdivided camera-space geometry beside the pictures from raster/. Made by
