@@ -35,6 +35,10 @@ struct DemoSite {
   std::string stakePoints; ///< CSV
   std::string controlPoints;  ///< CSV
   std::string truth;       ///< folder; see writeDemoSite
+  std::string stations;    ///< JSON: worldFromScanner and grid of each scanner station
+  std::string perturbedCameras;  ///< COLMAP text model with poses off by about 2 cm and 0.2 degrees
+  std::string trajectory;  ///< TUM: the exact poses, 15 Hz
+  std::string observations;  ///< CSV: control points in frame 0, with 0.3 px noise
   std::uint64_t pointCount = 0;
   int frameCount = 0;
 };
