@@ -7,12 +7,15 @@
 // (plugin_api/child_process.h, survey/design_stream.h). Runs with limits on memory and time; whatever
 // the library does on a bad file happens here and not in Alidade.
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <fstream>
 #include <iterator>
 #include <map>
 #include <new>
+#include <optional>
 #include <set>
 #include <unordered_set>
 
@@ -47,7 +50,7 @@ constexpr double kMostChordErrorM = 0.001;  ///< of circles drawn as polygons
 
 struct Tally {
   std::map<int, std::string> messages;  ///< entity id -> first complaint of the library
-  std::size_t notDrawn = 0, withoutBody = 0, faults = 0, notClosed = 0;
+  std::size_t notDrawn = 0, faults = 0;
 };
 
 struct Context {
@@ -108,23 +111,48 @@ bool finite(const Triangle& t) {
   return true;
 }
 
-/// The meshes of one set in the product's own coordinates; closed ones come out wound outwards.
+struct Shell {
+  std::vector<Triangle> triangles;
+  Bounds box;
+  double volume = 0;      ///< six times, signed
+  bool solid = false;     ///< closed, or nearly so: the sign of the volume tells inside from outside
+};
+
+/// A void within a solid is a shell of its own and faces inwards; every other solid faces outwards.
+void turnOutwards(std::vector<Shell>& shells) {
+  for (Shell& shell : shells) {
+    if (!shell.solid || shell.volume >= 0) continue;
+    const bool isVoid = std::any_of(shells.begin(), shells.end(), [&](const Shell& other) {
+      return &other != &shell && other.solid && std::abs(other.volume) > std::abs(shell.volume) &&
+             other.box.contains(shell.box.min) && other.box.contains(shell.box.max);
+    });
+    if (isVoid) continue;
+    for (Triangle& t : shell.triangles) std::swap(t[1], t[2]);
+    shell.volume = -shell.volume;
+  }
+}
+
+/// The meshes of one set in the product's own coordinates, wound outwards where they are solids.
 std::vector<Triangle> trianglesOf(const MeshSet& set, Tally& tally) {
-  std::vector<Triangle> all;
+  std::vector<Shell> shells;
   for (const auto* mesh : set.meshes) {
     if (!mesh) continue;
-    std::vector<Triangle> part;
+    Shell shell;
     for (const auto* face : mesh->faces)
-      if (face) triangulateFace(*face, part);
-    const std::size_t before = part.size();
-    std::erase_if(part, [](const Triangle& t) { return !finite(t); });
-    if (part.size() != before) ++tally.faults;
-    const bool closed = mesh->open_edges.empty();
-    // A void inside a solid is a mesh of its own and is meant to face inwards.
-    if (closed && !mesh->isNegative() && sixfoldVolume(part) < 0)
-      for (Triangle& t : part) std::swap(t[1], t[2]);
-    all.insert(all.end(), part.begin(), part.end());
+      if (face) triangulateFace(*face, shell.triangles);
+    const std::size_t before = shell.triangles.size();
+    std::erase_if(shell.triangles, [](const Triangle& t) { return !finite(t); });
+    if (shell.triangles.size() != before) ++tally.faults;
+    for (const Triangle& t : shell.triangles)
+      for (const glm::dvec3& corner : t) shell.box.add(corner);
+    shell.volume = sixfoldVolume(shell.triangles);
+    // A solid that lost a sliver in a subtraction has a few open edges and still an inside.
+    shell.solid = mesh->open_edges.size() * 10 < mesh->closed_edges.size();
+    shells.push_back(std::move(shell));
   }
+  turnOutwards(shells);
+  std::vector<Triangle> all;
+  for (const Shell& shell : shells) all.insert(all.end(), shell.triangles.begin(), shell.triangles.end());
   return all;
 }
 
@@ -156,12 +184,13 @@ double area(const std::vector<Triangle>& triangles) {
   return sum;
 }
 
-/// One colour an element: that of the largest surface among its items.
+/// One colour an element: that of the largest surface among its items, glass counting by its opacity (a
+/// window is known by its frame).
 class ColourVote {
  public:
   void add(const std::optional<Rgba8>& colour, double areaM2) {
     if (!colour) return;
-    m_area[std::bit_cast<std::uint32_t>(*colour)] += areaM2;
+    m_area[std::bit_cast<std::uint32_t>(*colour)] += areaM2 * colour->a;
   }
   std::optional<Rgba8> winner() const {
     const auto best = std::max_element(m_area.begin(), m_area.end(),
@@ -215,7 +244,6 @@ void addProduct(ProductShapeData& shape, const std::shared_ptr<IfcProduct>& prod
     }
   }
   if (builder.triangleCount() == 0) {
-    ++tally.withoutBody;
     builder.dropElement();
   } else if (const auto colour = vote.winner()) {
     builder.setColour(*colour);
