@@ -63,11 +63,17 @@ double ViewCamera::metresPerPixel(double depth) const {
 void ViewCamera::fit(const Bounds& bounds) {
   if (bounds.empty()) return;
   m_verticalFov = kDefaultFov;
-  const double radius = std::max(0.5 * bounds.diagonal(), 0.5);
-  const double horizontal = std::atan(std::tan(0.5 * m_verticalFov) * m_width / m_height);
-  const double distance = radius / std::sin(std::min(0.5 * m_verticalFov, horizontal));
   const glm::dvec3 look = glm::normalize(glm::dvec3(-0.55, 0.75, -0.5));
   m_worldFromView = attitudeFor(look, {0, 0, 1});
+  // The eye goes back until the last corner is in the picture, with a margin.
+  constexpr double kMargin = 1.06;
+  const double vertical = std::tan(0.5 * m_verticalFov), horizontal = vertical * m_width / m_height;
+  double distance = 0.5;
+  for (int i = 0; i < 8; ++i) {
+    const glm::dvec3 corner = glm::conjugate(m_worldFromView) * (bounds.corner(i) - bounds.centre());
+    const double needed = kMargin * std::max(std::abs(corner.x) / horizontal, std::abs(corner.y) / vertical);
+    distance = std::max(distance, needed + corner.z);
+  }
   m_position = bounds.centre() - distance * look;
 }
 
