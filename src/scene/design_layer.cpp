@@ -27,8 +27,8 @@ std::vector<glm::vec3> localVertices(const DesignModel& model, const glm::dvec3&
   return local;
 }
 
-/// The faces give way to their edges and the selection, not the other way round.
-void pushBack(const LitActor& actor, double factor, double units) {
+/// Lines win over the faces they lie in (VTK's own offsets see to it), the selection over both.
+void bringForward(const LitActor& actor, double factor, double units) {
   actor.mapper->SetResolveCoincidentTopologyToPolygonOffset();
   actor.mapper->SetRelativeCoincidentTopologyPolygonOffsetParameters(factor, units);
   actor.mapper->SetRelativeCoincidentTopologyLineOffsetParameters(factor, units);
@@ -52,8 +52,8 @@ DesignLayer::DesignLayer(vtkRenderer* renderer)
     : m_renderer(renderer),
       m_selectedFaces(makeActor(kSelectionColour, true)),
       m_selectedEdges(makeActor({1.0, 0.85, 0.4}, false)) {
-  pushBack(m_selectedFaces, -1.0, -2.0);
-  pushBack(m_selectedEdges, -3.0, -6.0);
+  bringForward(m_selectedFaces, -1.0, -1.0);
+  bringForward(m_selectedEdges, -1.0, -2.0);
   m_renderer->AddActor(m_selectedFaces.actor);
   m_renderer->AddActor(m_selectedEdges.actor);
 }
@@ -114,9 +114,9 @@ void DesignLayer::addPart(const SceneDesign& design) {
     each.actor->GetProperty()->SetInterpolationToFlat();
     each.actor->GetProperty()->SetAmbient(0.25);
     each.actor->GetProperty()->SetDiffuse(0.75);
-    pushBack(each, 1.0, 1.0);
+    bringForward(each, 0.0, 0.0);
   }
-  pushBack(part.edges, -1.0, -2.0);
+  bringForward(part.edges, 0.0, 0.0);
   for (const LitActor& each : {part.opaque, part.clear, part.edges}) m_renderer->AddActor(each.actor);
   m_parts.push_back(std::move(part));
 }

@@ -28,8 +28,10 @@ constexpr std::uint64_t kHardwareBudget = 8'000'000;
 // Data farther from the local origin than this moves the origin: floats step by 0.06 mm at 1 km.
 constexpr double kOriginReach = 1000.0;
 constexpr double kPointRadiusPx = 4.0;
-// Nearest over farthest plane at the least; 24 bits of depth then tell centimetres apart at 100 m.
-constexpr double kDepthRatio = 2e-5;
+// The nearest plane as a part of the distance to what the user works at: a nearer one costs depth
+// resolution (edges show through), a farther one cuts off what stands beside the eye.
+constexpr double kNearPart = 0.01;
+constexpr double kNearestPlane = 1e-5;  // of the farthest plane
 
 }  // namespace
 
@@ -121,7 +123,9 @@ struct SiteView::Impl {
       nearest = std::min(nearest, depth - slack);
       farthest = std::max(farthest, depth + slack);
     }
-    vtk->SetClippingRange(std::clamp(nearest, kDepthRatio * farthest, 0.9 * farthest), farthest);
+    const double work = camera.depthOf(pivot);
+    const double least = std::max(kNearestPlane * farthest, work > 0 ? std::min(kNearPart * work, 0.1 * farthest) : 0.0);
+    vtk->SetClippingRange(std::clamp(nearest, least, 0.9 * farthest), farthest);
   }
 
   std::optional<LayerHit> hit(const glm::dvec2& px) const {
@@ -255,6 +259,7 @@ void SiteView::lookFromFrame(FrameId frame) {
   m_impl->camera.lookFrom(worldFromCamera.translation, worldFromCamera.rotation * glm::dvec3(0, 0, 1),
                           worldFromCamera.rotation * glm::dvec3(0, -1, 0), 2.0 * std::atan(0.5 * k.width / k.fx),
                           2.0 * std::atan(0.5 * k.height / k.fy));
+  m_impl->pivot = m_impl->grasp(0.5 * glm::dvec2(m_impl->camera.width(), m_impl->camera.height()));
 }
 
 void SiteView::beginDrag(const glm::dvec2& px) {
