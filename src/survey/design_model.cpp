@@ -28,64 +28,98 @@ Bounds DesignModel::elementBounds(std::size_t element) const {
 
 namespace {
 
-/// One vertex index for all vertices in the same weld cell.
+/// One vertex index for all vertices that lie within the weld distance of the first one seen.
 class Welder {
  public:
-  Welder(const std::vector<glm::vec3>& vertices, double cell) : m_vertices(vertices), m_cell(cell) {}
+  Welder(const std::vector<glm::vec3>& vertices, double weld)
+      : m_vertices(vertices), m_weld(weld), m_cell(16 * weld) {}
 
   std::uint32_t canonical(std::uint32_t index) {
-    const glm::vec3& v = m_vertices[index];
-    const std::array<std::int64_t, 3> key{std::llround(v.x / m_cell), std::llround(v.y / m_cell),
-                                          std::llround(v.z / m_cell)};
-    return m_first.emplace(key, index).first->second;
+    const glm::dvec3 v(m_vertices[index]);
+    // Near a cell's side the partner may lie in the next one; mostly the range is a single cell.
+    const Key low = keyOf(v - m_weld), high = keyOf(v + m_weld);
+    Key key;
+    for (key[0] = low[0]; key[0] <= high[0]; ++key[0])
+      for (key[1] = low[1]; key[1] <= high[1]; ++key[1])
+        for (key[2] = low[2]; key[2] <= high[2]; ++key[2]) {
+          const auto found = m_cells.find(key);
+          if (found == m_cells.end()) continue;
+          for (const std::uint32_t other : found->second)
+            if (glm::distance(glm::dvec3(m_vertices[other]), v) <= m_weld) return other;
+        }
+    m_cells[keyOf(v)].push_back(index);
+    return index;
   }
 
  private:
+  using Key = std::array<std::int64_t, 3>;
   struct Hash {
-    std::size_t operator()(const std::array<std::int64_t, 3>& k) const noexcept {
+    std::size_t operator()(const Key& k) const noexcept {
       std::uint64_t h = 0x9E3779B97F4A7C15ull;
       for (const auto v : k) h = (h ^ static_cast<std::uint64_t>(v)) * 0xBF58476D1CE4E5B9ull, h ^= h >> 29;
       return h;
     }
   };
+  Key keyOf(const glm::dvec3& v) const {
+    return {std::llround(std::floor(v.x / m_cell)), std::llround(std::floor(v.y / m_cell)),
+            std::llround(std::floor(v.z / m_cell))};
+  }
+
   const std::vector<glm::vec3>& m_vertices;
-  double m_cell;
-  std::unordered_map<std::array<std::int64_t, 3>, std::uint32_t, Hash> m_first;
+  double m_weld, m_cell;
+  std::unordered_map<Key, std::vector<std::uint32_t>, Hash> m_cells;
 };
 
+/// How triangles meet at an edge. `normal` is the first one's, `upward` says whether it runs from the
+/// edge's low index to its high one.
 struct EdgeUse {
-  glm::vec3 normal{0};
+  glm::dvec3 normal{0};
   int count = 0;
+  bool upward = false;
   bool crease = false;
+
+  void add(const glm::dvec3& other, bool otherUpward, double cosine) {
+    if (count++ == 0) {
+      normal = other;
+      upward = otherUpward;
+      return;
+    }
+    // Neighbours that run along the edge the same way are wound against each other: one normal is turned.
+    const double dot = glm::dot(normal, other) * (upward == otherUpward ? -1 : 1);
+    crease = crease || dot < cosine;
+  }
 };
+
+using EdgeUses = std::unordered_map<std::uint64_t, EdgeUse>;
+
+EdgeUses edgeUses(const DesignModel& model, const DesignElement& element, double cosine, double weld) {
+  EdgeUses uses;
+  Welder welder(model.vertices, weld);
+  for (std::uint32_t i = 0; i + 2 < element.indexCount; i += 3) {
+    std::array<std::uint32_t, 3> corner;
+    for (int c = 0; c < 3; ++c) corner[c] = welder.canonical(model.triangles[element.firstIndex + i + c]);
+    if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) continue;
+    const glm::dvec3 a(model.vertices[corner[0]]), b(model.vertices[corner[1]]), c(model.vertices[corner[2]]);
+    const glm::dvec3 cross = glm::cross(b - a, c - a);
+    const double length = glm::length(cross);
+    if (!(length > 0)) continue;
+    for (int side = 0; side < 3; ++side) {
+      const std::uint32_t from = corner[side], to = corner[(side + 1) % 3];
+      const auto [low, high] = std::minmax(from, to);
+      uses[(static_cast<std::uint64_t>(low) << 32) | high].add(cross / length, from < to, cosine);
+    }
+  }
+  return uses;
+}
 
 }  // namespace
 
 void findFeatureEdges(DesignModel& model, double creaseAngle, double weld) {
   model.edges.clear();
-  const float cosine = static_cast<float>(std::cos(creaseAngle));
   for (DesignElement& element : model.elements) {
     element.firstEdge = static_cast<std::uint32_t>(model.edges.size());
-    Welder welder(model.vertices, weld);
-    std::unordered_map<std::uint64_t, EdgeUse> uses;
-    for (std::uint32_t i = 0; i + 2 < element.indexCount; i += 3) {
-      std::array<std::uint32_t, 3> corner;
-      for (int c = 0; c < 3; ++c) corner[c] = welder.canonical(model.triangles[element.firstIndex + i + c]);
-      const glm::vec3 cross = glm::cross(model.vertices[corner[1]] - model.vertices[corner[0]],
-                                         model.vertices[corner[2]] - model.vertices[corner[0]]);
-      const float length = glm::length(cross);
-      if (!(length > 0)) continue;
-      const glm::vec3 normal = cross / length;
-      for (int c = 0; c < 3; ++c) {
-        const auto [low, high] = std::minmax(corner[c], corner[(c + 1) % 3]);
-        EdgeUse& use = uses[(static_cast<std::uint64_t>(low) << 32) | high];
-        if (use.count == 0) use.normal = normal;
-        else if (glm::dot(use.normal, normal) < cosine) use.crease = true;
-        ++use.count;
-      }
-    }
     std::vector<std::uint64_t> keys;
-    for (const auto& [key, use] : uses)
+    for (const auto& [key, use] : edgeUses(model, element, std::cos(creaseAngle), weld))
       if (use.count == 1 || use.crease) keys.push_back(key);
     std::sort(keys.begin(), keys.end());
     for (const auto key : keys)
