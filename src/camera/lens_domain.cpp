@@ -126,7 +126,9 @@ LensDomain::LensDomain(const Distortion& distortion)
   if (!m_bent) return;
   m_rayLimits.resize(rayCount);
   for (int i = 0; i < rayCount; ++i) m_rayLimits[i] = limitAlong(2 * std::numbers::pi * i / rayCount);
-  m_foldBackRadius = *std::max_element(m_rayLimits.begin(), m_rayLimits.end());
+  const auto [least, most] = std::minmax_element(m_rayLimits.begin(), m_rayLimits.end());
+  m_foldBackRadius = *most;
+  m_surelyInside = 0.9 * *least;
 }
 
 double LensDomain::orientation(double x, double y) const {
@@ -174,7 +176,7 @@ double LensDomain::limitAlong(double angleRad) const {
 bool LensDomain::contains(double x, double y) const {
   const double r2 = x * x + y * y;
   if (!(r2 <= m_foldBackRadius * m_foldBackRadius) || !std::isfinite(r2)) return false;
-  if (!m_bent) return true;
+  if (r2 < m_surelyInside * m_surelyInside || !m_bent) return true;
   const double r = std::sqrt(r2);
   const double turn = std::atan2(y, x) / (2 * std::numbers::pi);
   const int bin = static_cast<int>(std::floor((turn - std::floor(turn)) * rayCount));

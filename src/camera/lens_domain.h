@@ -67,6 +67,7 @@ class LensDomain {
   Lens<double> m_radial;            ///< the radial factor alone
   double m_radialLimit = std::numeric_limits<double>::infinity();
   double m_foldBackRadius = std::numeric_limits<double>::infinity();
+  double m_surelyInside = 0;        ///< no direction ends below this radius
   bool m_bent = false;              ///< has more than a radial factor: the domain is no circle
   std::vector<double> m_rayLimits;  ///< of a bent lens, by equal steps of angle
 };

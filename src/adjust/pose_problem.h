@@ -1,0 +1,84 @@
+// SPDX-FileCopyrightText: 2026 the Alidade authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "adjust/resection.h"
+
+namespace alidade {
+
+/// A pose as the solver holds it: the camera centre relative to the problem's origin, and the attitude.
+struct PoseState {
+  glm::dvec3 centre{0};                     ///< metres from PoseProblem::origin()
+  glm::dquat rotation{1.0, 0.0, 0.0, 0.0};  ///< camera axes from world axes, unit
+};
+
+using Vector6 = Eigen::Matrix<double, 6, 1>;
+using Matrix6 = Eigen::Matrix<double, 6, 6>;
+using Matrix26 = Eigen::Matrix<double, 2, 6>;
+
+/// Residual of one observation and its derivatives.
+struct Linearised {
+  glm::dvec2 residualPx{0};  ///< projected - observed
+  Matrix26 jacobian;         ///< d(pixel) / d(centre E N H, rotation about the camera's x y z)
+};
+
+/// One space resection: who was seen where, what is free, and its linear algebra. The derivatives are
+/// analytic: with p = R (X - C), dp/dC = -R and, for R' = exp(w) R, dp/dw = -[p]x.
+class PoseProblem {
+ public:
+  PoseProblem(const Camera& camera, const RigidTransform& start,
+              const std::vector<ResectionObservation>& observations, const ResectionOptions& options);
+
+  const Camera& camera() const { return m_camera; }
+  const std::vector<ResectionObservation>& observations() const { return m_observations; }
+  int size() const { return static_cast<int>(m_observations.size()); }
+
+  glm::dvec3 origin() const { return m_origin; }
+  PoseState startState() const { return m_start; }
+  RigidTransform pose(const PoseState& state) const;
+  glm::dvec3 inCamera(const PoseState& state, const glm::dvec3& world) const;
+
+  /// Columns of the 6-vector that may move, and their number.
+  const std::vector<int>& freeColumns() const { return m_free; }
+  int freeCount() const { return static_cast<int>(m_free.size()); }
+  bool positionFree() const;
+  bool attitudeFree() const;
+  bool allFree() const { return freeCount() == 6; }
+  /// The fewest points that fix the free parameters uniquely: half as many, rounded up, and one more
+  /// for the whole pose, where three points leave up to four poses.
+  int pointsNeeded() const;
+
+  /// Nothing for a point behind the camera.
+  std::optional<Linearised> linearise(const PoseState& state, int observation) const;
+  std::optional<Linearised> lineariseAt(const PoseState& state, const glm::dvec3& world) const;
+  /// |residual| / sigma; infinite behind the camera.
+  double sigmas(const PoseState& state, int observation) const;
+  /// Sum of squared sigmas over the chosen observations; infinite where one is behind the camera.
+  double cost(const PoseState& state, const std::vector<int>& chosen) const;
+
+  /// Jᵀ P J over the chosen observations; locked rows and columns are zero.
+  Matrix6 normalMatrix(const PoseState& state, const std::vector<int>& chosen) const;
+  /// Inverse over the free parameters, zero elsewhere; nothing where it is singular.
+  std::optional<Matrix6> covariance(const Matrix6& normal) const;
+
+  /// Levenberg-Marquardt on few observations, quick and without allocation of a solver; for
+  /// hypotheses. Returns where it stood last.
+  PoseState descend(PoseState state, const std::vector<int>& chosen, int iterations) const;
+
+ private:
+  PoseState moved(const PoseState& state, const Vector6& step) const;
+
+  const Camera& m_camera;
+  const std::vector<ResectionObservation>& m_observations;
+  glm::dvec3 m_origin{0};
+  PoseState m_start;
+  std::vector<int> m_free;
+};
+
+}  // namespace alidade

@@ -1,0 +1,225 @@
+// SPDX-FileCopyrightText: 2026 the Alidade authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "adjust/resection.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include <Eigen/Eigenvalues>
+#include <fmt/format.h>
+
+#include "adjust/pose_problem.h"
+#include "adjust/pose_solver.h"
+#include "adjust/resection_checks.h"
+
+namespace alidade {
+
+namespace {
+
+constexpr double noNumber = std::numeric_limits<double>::quiet_NaN();
+constexpr double chiSquared95 = 5.991464547107979;  // two degrees of freedom
+
+/// Residual of an observation in units of its own standard deviation: an adjusted residual has the
+/// covariance s²I - J Q Jᵀ, that of an observation left out s²I + J Q Jᵀ (Baarda 1968). An observation
+/// that nothing else checks keeps a tenth of its sigma, so that it cannot be condemned by rounding.
+double standardised(const PoseProblem& problem, const PoseState& state, const Matrix6& covariance, int i, bool used) {
+  const auto at = problem.linearise(state, i);
+  if (!at) return std::numeric_limits<double>::infinity();
+  const double variance = problem.observations()[i].sigmaPx * problem.observations()[i].sigmaPx;
+  const Eigen::Matrix2d byPose = at->jacobian * covariance * at->jacobian.transpose();
+  const Eigen::Matrix2d own = variance * Eigen::Matrix2d::Identity() + (used ? -1 : 1) * byPose;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(own);
+  const Eigen::Vector2d r = axes.eigenvectors().transpose() * Eigen::Vector2d(at->residualPx.x, at->residualPx.y);
+  double sum = 0;
+  for (int k = 0; k < 2; ++k) sum += r[k] * r[k] / std::max(axes.eigenvalues()[k], 0.01 * variance);
+  return std::sqrt(sum);
+}
+
+struct Adjusted {
+  PoseSolution solution;
+  std::vector<int> inliers;
+  std::optional<Matrix6> covariance;
+  int iterations = 0;
+};
+
+/// Plain least squares on the inliers; then one observation at a time is dropped or taken back by
+/// its standardised residual, until none changes side.
+Adjusted adjust(const PoseProblem& problem, PoseState state, std::vector<int> inliers, const std::vector<int>& usable,
+                double limit, const ResectionOptions& options) {
+  Adjusted done;
+  const bool robust = options.huberSigmas > 0;
+  for (int round = 0; round < 2 * problem.size() + 5; ++round) {
+    done.solution = solvePose(problem, state, inliers, 0, options.maximumIterations);
+    done.iterations += done.solution.iterations;
+    state = done.solution.state;
+    done.covariance = problem.covariance(problem.normalMatrix(state, inliers));
+    if (!done.covariance || !robust) break;
+    const auto used = [&](int i) { return std::binary_search(inliers.begin(), inliers.end(), i); };
+    int worst = -1, best = -1;
+    double largest = limit, smallest = limit;
+    for (const int i : usable) {
+      const double s = standardised(problem, state, *done.covariance, i, used(i));
+      if (used(i) && s > largest) worst = i, largest = s;
+      if (!used(i) && s < smallest) best = i, smallest = s;
+    }
+    if (worst >= 0 && static_cast<int>(inliers.size()) > problem.pointsNeeded())
+      inliers.erase(std::find(inliers.begin(), inliers.end(), worst));
+    else if (worst < 0 && best >= 0)
+      inliers.insert(std::upper_bound(inliers.begin(), inliers.end(), best), best);
+    else
+      break;
+  }
+  done.inliers = std::move(inliers);
+  return done;
+}
+
+std::vector<ResectionResidual> residualsAt(const PoseProblem& problem, const PoseState& state) {
+  std::vector<ResectionResidual> all;
+  for (int i = 0; i < problem.size(); ++i) {
+    ResectionResidual to;
+    const ResectionObservation& o = problem.observations()[i];
+    to.name = o.name;
+    const auto at = problem.linearise(state, i);
+    to.residualPx = at ? at->residualPx : glm::dvec2(noNumber);
+    to.sigmas = problem.sigmas(state, i);
+    to.outlier = !at;
+    all.push_back(to);
+  }
+  return all;
+}
+
+/// From the pose's covariance: the pixel's through the full lens, and the point's across the ray.
+ExpectedError expectedAt(const PoseProblem& problem, const PoseState& state, const Matrix6& covariance,
+                         const glm::dvec3& world) {
+  ExpectedError expected;
+  expected.world = world;
+  const auto at = problem.lineariseAt(state, world);
+  const glm::dvec3 p = problem.inCamera(state, world);
+  if (!at || !problem.camera().project(p)) {
+    expected.ellipseSemiMajorPx = expected.ellipseSemiMinorPx = noNumber;
+    expected.ellipseAngleRad = expected.millimetres = noNumber;
+    return expected;
+  }
+  const Eigen::Matrix2d pixel = at->jacobian * covariance * at->jacobian.transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(pixel);
+  expected.ellipseSemiMinorPx = std::sqrt(chiSquared95 * std::max(0.0, axes.eigenvalues()[0]));
+  expected.ellipseSemiMajorPx = std::sqrt(chiSquared95 * std::max(0.0, axes.eigenvalues()[1]));
+  const Eigen::Vector2d major = axes.eigenvectors().col(1);
+  expected.ellipseAngleRad = std::atan2(major[1], major[0]);
+
+  const glm::dmat3 rotation = glm::mat3_cast(state.rotation);
+  Eigen::Matrix<double, 3, 6> moves;
+  for (int k = 0; k < 3; ++k) {
+    glm::dvec3 unit(0);
+    unit[k] = 1;
+    const glm::dvec3 byCentre = -(rotation * unit), byRotation = glm::cross(unit, p);
+    moves.col(k) << byCentre.x, byCentre.y, byCentre.z;
+    moves.col(3 + k) << byRotation.x, byRotation.y, byRotation.z;
+  }
+  const glm::dvec3 ray = glm::normalize(p);
+  const Eigen::Vector3d d(ray.x, ray.y, ray.z);
+  const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - d * d.transpose();
+  const Eigen::Matrix3d spread = across * moves * covariance * moves.transpose() * across;
+  const double largest = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvalues()[2];
+  expected.millimetres = 1000 * std::sqrt(chiSquared95 * std::max(0.0, largest));
+  return expected;
+}
+
+ResectionSummary refused(ResectionSummary summary, std::string reason) {
+  summary.converged = false;
+  summary.reason = std::move(reason);
+  return summary;
+}
+
+void describe(ResectionSummary& summary, const PoseProblem& problem, const PoseState& state, const Adjusted& done,
+              const ResectionOptions& options) {
+  summary.residuals = residualsAt(problem, state);
+  double squares = 0, weighted = 0;
+  for (auto& r : summary.residuals) r.outlier = true;
+  for (const int i : done.inliers) {
+    ResectionResidual& r = summary.residuals[i];
+    r.outlier = false;
+    squares += glm::dot(r.residualPx, r.residualPx);
+    weighted += r.sigmas * r.sigmas;
+  }
+  const double m = static_cast<double>(done.inliers.size());
+  summary.rmsPx = std::sqrt(squares / m);
+  const double redundancy = 2 * m - problem.freeCount();
+  summary.sigma0 = redundancy > 0 ? std::sqrt(weighted / redundancy) : 0;
+  const Matrix6& covariance = *done.covariance;
+  for (int r = 0; r < 6; ++r)
+    for (int c = 0; c < 6; ++c) summary.covariance[r][c] = covariance(r, c);
+  for (int i = 0; i < 3; ++i) {
+    summary.positionStdM[i] = std::sqrt(covariance(i, i));
+    summary.rotationStdRad[i] = std::sqrt(covariance(3 + i, 3 + i));
+  }
+  for (const glm::dvec3& at : options.at) summary.expected.push_back(expectedAt(problem, state, covariance, at));
+}
+
+}  // namespace
+
+Result<void> ResectionOptions::validate() const {
+  if (!std::isfinite(huberSigmas) || huberSigmas < 0)
+    return fail("The robust loss's width must be zero or positive", "huberSigmas", "Give 2.5, or 0 for none");
+  if (!std::isfinite(outlierSigmas) || !(outlierSigmas > 0))
+    return fail("The limit for outliers must be positive", "outlierSigmas", "Give 3.5");
+  if (maximumIterations < 1 || maximumIterations > 100000)
+    return fail("The number of iterations must lie between 1 and 100000", "maximumIterations", "Give 100");
+  for (const glm::dvec3& p : at)
+    if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+      return fail("A point for the expected error is not finite", "at", "Give its coordinates in metres");
+  return {};
+}
+
+Result<ResectionSummary> resect(const Camera& camera, const RigidTransform& startCameraFromWorld,
+                                const std::vector<ResectionObservation>& observations,
+                                const ResectionOptions& options) {
+  if (const auto valid = options.validate(); !valid) return fail(valid.error().in("resection options"));
+  const PoseProblem problem(camera, startCameraFromWorld, observations, options);
+  ResectionSummary summary;
+  summary.cameraFromWorld = startCameraFromWorld;
+  if (const auto why = refusalOfInput(problem, startCameraFromWorld)) return refused(summary, *why);
+  const PoseState start = problem.startState();
+  summary.residuals = residualsAt(problem, start);
+
+  std::vector<int> all(problem.size()), usable;
+  std::iota(all.begin(), all.end(), 0);
+  for (const int i : all)
+    if (std::isfinite(problem.sigmas(start, i))) usable.push_back(i);
+  if (const auto why = refusalOfGeometry(problem, all)) return refused(summary, *why);
+  if (const auto why = refusalOfSide(problem, usable)) return refused(summary, *why);
+  if (const auto why = refusalOfGeometry(problem, usable)) return refused(summary, *why);
+  if (!problem.covariance(problem.normalMatrix(start, usable)))
+    return refused(summary, *refusalOfWeakness(problem, start, usable, 1));
+
+  Consensus consensus = findConsensus(problem, usable, options);
+  summary.iterations = consensus.iterations;
+  const int agreeing = static_cast<int>(consensus.inliers.size());
+  if (agreeing < problem.pointsNeeded() || 5 * agreeing < 2 * problem.size())
+    return refused(summary, fmt::format("Only {} of {} observations agree with one pose; check the picks, the point "
+                                        "numbers and the start pose", agreeing, problem.size()));
+  if (const auto why = refusalOfTwoPoses(problem, consensus.state, consensus.inliers, consensus.scale))
+    return refused(summary, *why);
+  const Adjusted done = adjust(problem, consensus.state, consensus.inliers, usable,
+                               options.outlierSigmas * consensus.scale, options);
+  summary.iterations += done.iterations;
+  if (!done.solution.converged)
+    return refused(summary, fmt::format("The solution did not settle within {} iterations ({}); give a better start pose",
+                                        options.maximumIterations, done.solution.message));
+  if (const auto why = refusalOfGeometry(problem, done.inliers)) return refused(summary, *why);
+  if (const auto why = refusalOfWeakness(problem, done.solution.state, done.inliers, consensus.scale))
+    return refused(summary, *why);
+
+  summary.converged = true;
+  summary.cameraFromWorld = problem.pose(done.solution.state);
+  describe(summary, problem, done.solution.state, done, options);
+  summary.reason = consensus.scale > 1
+                       ? fmt::format("Converged, but the residuals are about {:.1f} times the given sigmas", summary.sigma0)
+                       : "Converged";
+  return summary;
+}
+
+}  // namespace alidade
