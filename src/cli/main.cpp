@@ -6,11 +6,17 @@
 #include <QGuiApplication>
 
 #include "app/version.h"
+#include "base/log.h"
 #include "cli/command.h"
 
 namespace {
 
 constexpr int kBadUsage = 2;
+
+/// Qt's own remarks are for developers: to the log, not between the answer and its reader.
+void toLog(QtMsgType, const QMessageLogContext&, const QString& text) {
+  alidade::log(alidade::LogLevel::Debug, text.toStdString());
+}
 
 }  // namespace
 
@@ -18,7 +24,7 @@ int main(int argc, char** argv) {
   using namespace alidade;
   // Text on pictures needs fonts, never a display.
   qputenv("QT_QPA_PLATFORM", "offscreen");
-  qputenv("QT_LOGGING_RULES", "qt.qpa.*=false");
+  qInstallMessageHandler(toLog);
   const QGuiApplication application(argc, argv);
 
   CLI::App app("Alidade: designs over raw images, exactly where they would stand", "alidade-cli");

@@ -88,7 +88,7 @@ void paintScaleBar(QPainter& painter, const TitleBlock& title, const QRectF& are
 ColourImage withTitleBlock(const ColourImage& picture, const TitleBlock& title) {
   const double unit = std::clamp(picture.width() / 95.0, 9.0, 44.0);  // height of the block's body text, px
   const auto fields = fieldsOf(title);
-  const int columns = picture.width() > unit * 50 ? 2 : 1;
+  const int columns = picture.width() > unit * 80 ? 2 : 1;
   const int rows = (static_cast<int>(fields.size()) + columns - 1) / columns;
   const double margin = unit * 1.2;
   const int block = static_cast<int>(std::lround(margin * 2 + unit * 2.2 + rows * unit * 1.7));
