@@ -18,7 +18,7 @@ namespace {
 const glm::vec3 kSun = glm::vec3(1.0f, 0.93f, 0.80f) * 2.6f;
 const glm::vec3 kSkyLight = glm::vec3(0.72f, 0.86f, 1.06f) * 0.85f;
 const glm::vec3 kBounce = glm::vec3(0.40f, 0.36f, 0.31f) * 0.55f;
-constexpr int kDirections = 96;
+constexpr int kDirections = 56;
 
 /// Even directions over the sphere (Fibonacci lattice).
 glm::dvec3 sphereDirection(int i, int count) {

@@ -80,7 +80,7 @@ vec3 brick(const Place& at) {
   const int column = static_cast<int>(std::floor(along / length));
   const float variation = cellNoise(column, static_cast<int>(row), 17);
   const float keep = glm::clamp(1.5f - at.footprint / 0.12f, 0.0f, 1.0f);
-  vec3 colour = glm::mix(vec3(0.36f, 0.13f, 0.075f), vec3(0.50f, 0.22f, 0.13f), glm::mix(0.5f, variation, keep));
+  vec3 colour = glm::mix(vec3(0.29f, 0.12f, 0.075f), vec3(0.42f, 0.20f, 0.125f), glm::mix(0.5f, variation, keep));
   if (variation > 0.93f) colour *= glm::mix(1.0f, 0.6f, keep);
   colour *= 0.75f + 0.5f * fractalNoise(at.p * 9.0f, 3, at.footprint * 9.0f);
   const float mortar = std::max(lineCover(at.face.y, course, joint, at.footprint),
@@ -95,6 +95,22 @@ vec3 gravelPattern(const Place& at, float size, const vec3& dark, const vec3& li
   return glm::mix(dark, light, glm::clamp(1.7f * (fine - 0.5f) + 0.5f + 0.5f * (coarse - 0.5f), 0.0f, 1.0f));
 }
 
+/// Stones of some centimetres: each lattice cell has a tone of its own, with dark gaps between.
+vec3 gravel(const Place& at) {
+  const vec3 n = at.site * 31.0f;
+  // The lattice is bent by its own size, or the stones would lie in rows.
+  const vec3 bend(valueNoise(n), valueNoise(n + 37.0f), valueNoise(n + 71.0f));
+  const vec3 q = at.site / 0.045f + 2.2f * (bend - 0.5f);
+  const vec3 base = glm::floor(q);
+  const float tone = cellNoise(static_cast<int>(base.x), static_cast<int>(base.y), static_cast<int>(base.z));
+  const vec3 inCell = glm::abs(q - base - 0.5f);
+  const float gap = smoothStep(0.34f, 0.5f, std::max(inCell.x, inCell.y));
+  const float keep = glm::clamp(1.4f - at.footprint / 0.035f, 0.0f, 1.0f);
+  const float coarse = fractalNoise(at.site * 1.1f, 3, at.footprint * 1.1f);
+  const float mean = 0.42f + 0.20f * (coarse - 0.5f);
+  return vec3(1.0f, 0.97f, 0.91f) * glm::mix(mean * 0.85f, (0.22f + 0.36f * tone) * (1.0f - 0.6f * gap), keep);
+}
+
 vec3 asphalt(const Place& at) {
   vec3 colour = gravelPattern(at, 0.02f, vec3(0.055f, 0.055f, 0.06f), vec3(0.125f, 0.12f, 0.12f));
   const float dirt = fractalNoise(vec2(at.site.x * 0.25f, at.site.y * 0.9f), 4, at.footprint);
@@ -104,12 +120,13 @@ vec3 asphalt(const Place& at) {
 /// The ground: soil with tracks and puddles, gravel around the building, asphalt on the road, grass far off.
 vec3 ground(const Place& at) {
   const vec2 xy(at.site);
+  if (xy.y < -10.4f && xy.y > -17.3f) return asphalt(at);
   const float wander = fractalNoise(xy * 0.55f, 4, at.footprint * 0.55f) - 0.5f;
   const float damp = fractalNoise(xy * 0.22f + 7.0f, 4, at.footprint * 0.22f);
   vec3 colour = gravelPattern(at, 0.055f, vec3(0.155f, 0.105f, 0.065f), vec3(0.36f, 0.27f, 0.185f));
   colour *= 1.0f - 0.42f * smoothStep(0.52f, 0.68f, damp);
-  const float stones = fractalNoise(at.site * 7.0f, 2, at.footprint * 7.0f);
-  colour = glm::mix(colour, vec3(0.42f, 0.40f, 0.36f), 0.7f * smoothStep(0.64f, 0.70f, stones));
+  const float stones = fractalNoise(at.site * 23.0f, 2, at.footprint * 23.0f);
+  colour = glm::mix(colour, vec3(0.42f, 0.40f, 0.36f), 0.55f * smoothStep(0.66f, 0.70f, stones));
   for (const float track : {-12.3f, -13.9f, 10.0f}) {
     const bool alongX = track < 0;
     const float across = (alongX ? xy.y : xy.x) - track + 0.25f * wander;
@@ -119,10 +136,11 @@ vec3 ground(const Place& at) {
   }
   const vec2 beyond = glm::max(glm::abs(xy) - vec2(9.0f, 6.0f), vec2(0.0f));
   const float apron = 1.0f - smoothStep(0.9f, 1.7f, glm::length(beyond) + 1.2f * wander);
-  colour = glm::mix(colour, gravelPattern(at, 0.035f, vec3(0.20f, 0.19f, 0.18f), vec3(0.56f, 0.54f, 0.50f)), apron);
-  const float road = smoothStep(-10.25f, -10.4f, xy.y) * smoothStep(-17.6f, -17.3f, xy.y);
-  colour = glm::mix(colour, asphalt(at), road);
+  if (apron > 0) colour = glm::mix(colour, gravel(at), apron);
+  const float road = (1.0f - smoothStep(-10.4f, -10.25f, xy.y)) * smoothStep(-17.6f, -17.3f, xy.y);
+  if (road > 0) colour = glm::mix(colour, asphalt(at), road);
   const float meadow = smoothStep(21.0f, 24.0f, glm::length(xy * vec2(0.9f, 1.0f)) + 3.0f * wander) * (1.0f - road);
+  if (meadow <= 0) return colour;
   const float blades = fractalNoise(xy * 5.0f, 4, at.footprint * 5.0f);
   return glm::mix(colour, glm::mix(vec3(0.09f, 0.14f, 0.04f), vec3(0.24f, 0.28f, 0.09f), blades), meadow);
 }
@@ -158,7 +176,7 @@ vec3 baseColour(Material material, const Place& at) {
     case Material::ScreedConcrete: return screed(at);
     case Material::Brick: return brick(at);
     case Material::Soil: return ground(at);
-    case Material::Gravel: return gravelPattern(at, 0.04f, vec3(0.19f, 0.18f, 0.17f), vec3(0.56f, 0.54f, 0.50f));
+    case Material::Gravel: return gravel(at);
     case Material::Sand: return gravelPattern(at, 0.02f, vec3(0.40f, 0.31f, 0.19f), vec3(0.60f, 0.49f, 0.32f));
     case Material::Asphalt: return asphalt(at);
     case Material::Grass: return vec3(0.16f, 0.22f, 0.07f);
