@@ -192,6 +192,7 @@ Result<void> makeDevice(GpuDevice::Core& core) {
   auto features13 = stamped<VkPhysicalDeviceVulkan13Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES);
   features13.dynamicRendering = VK_TRUE;
   features13.synchronization2 = VK_TRUE;
+  features13.maintenance4 = VK_TRUE;  // glslc writes LocalSizeId; every 1.3 device has it
   auto features = stamped<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2);
   features.pNext = &features13;
   features.features.independentBlend = VK_TRUE;
