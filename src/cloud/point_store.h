@@ -90,7 +90,8 @@ class PointStoreBuilder {
   explicit PointStoreBuilder(const Options& options);
   ~PointStoreBuilder();
 
-  /// Points that are not finite, or farther than 10^12 m from the origin, are left out and counted.
+  /// Points that are not finite, or farther than 10^8 m from the origin (no survey's
+  /// coordinates are; one such point would cost all others their resolution), are left out and counted.
   void add(const PointBatch& batch);
   std::uint64_t droppedCount() const;
 

@@ -10,8 +10,9 @@ namespace alidade {
 
 namespace {
 
-/// Beyond the Earth's neighbourhood a double resolves no survey and the octree's steps no object.
-constexpr double kFarthestMeters = 1e12;
+/// Wider than any survey's coordinates, zone-prefixed eastings (6·10^7) included. Within it the
+/// octree's 21 bits an axis and a node's 16 always reach a millimetre or two.
+constexpr double kFarthestMeters = 1e8;
 
 std::uint16_t rgb565(unsigned r, unsigned g, unsigned b) {
   return static_cast<std::uint16_t>(((r >> 3) << 11) | ((g >> 2) << 5) | (b >> 3));

@@ -136,7 +136,8 @@ SplatView baseView(const Camera& camera, const SplatOptions& options) {
   view.fy = static_cast<float>(in.fy);
   view.cx = static_cast<float>(in.cx);
   view.cy = static_cast<float>(in.cy);
-  view.foldBackSquared = static_cast<float>(camera.foldBackRadius() * camera.foldBackRadius());
+  // A hair inside: a float's rounding must not let a point from beyond the fold in.
+  view.foldBackSquared = static_cast<float>(camera.foldBackRadius() * camera.foldBackRadius() * (1.0 - 1e-6));
   view.width = camera.width();
   view.height = camera.height();
   view.round = options.round;
