@@ -1,0 +1,351 @@
+// SPDX-FileCopyrightText: 2026 the Alidade authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "overlay/renderer.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+
+#include <QImage>
+
+#include <gtest/gtest.h>
+
+#include "overlay/annotation_painter.h"
+#include "raster/occlusion.h"
+#include "unit/overlay/scenes.h"
+
+namespace alidade {
+
+namespace {
+
+constexpr int kWidth = 480, kHeight = 320;
+
+/// ALIDADE_TEST_PICTURES=folder keeps the pictures for looking at.
+void keep(const ColourImage& picture, const std::string& name) {
+  const char* folder = std::getenv("ALIDADE_TEST_PICTURES");
+  if (!folder || picture.empty()) return;
+  std::filesystem::create_directories(folder);
+  QImage(reinterpret_cast<const uchar*>(picture.data()), picture.width(), picture.height(), 4 * picture.width(),
+         QImage::Format_RGBA8888)
+      .save(QString::fromStdString(std::string(folder) + "/" + name + ".png"));
+}
+
+/// A scan known in closed form: a wall at 8 m on the left third, nothing known in the middle third, sky on the right.
+DepthImage analyticScan(int width, int height) {
+  DepthImage depth(width, height);
+  for (int y = 0; y < height; ++y)
+    for (int x = 0; x < width; ++x)
+      depth.at(x, y) = x < width / 3       ? 8.0f
+                       : x < 2 * width / 3 ? std::numeric_limits<float>::quiet_NaN()
+                                           : std::numeric_limits<float>::infinity();
+  return depth;
+}
+
+FrameDescription boxesFrame(const glm::dvec3& origin = glm::dvec3(0), int width = kWidth, int height = kHeight) {
+  FrameDescription frame;
+  frame.camera = wideAngleCamera(width, height);
+  frame.cameraFromWorld = poseBefore(origin);
+  frame.image = stripedPicture(width, height);
+  BoxModel model(origin);
+  model.box({-5, 0, 0.3f}, {2.2f, 2, 4}, {210, 90, 60, 255});
+  model.box({-1.2f, 0, 0}, {2, 2, 3}, {90, 160, 220, 255});
+  model.box({2.5f, 1, 0.5f}, {3, 2, 4}, {120, 200, 120, 255});
+  model.box({-5.5f, -4.5f, -0.6f}, {1, 1, 1.5f}, {230, 210, 90, 255});
+  frame.designs.push_back({model.made(), {}, {}, {}});
+  return frame;
+}
+
+class DeviceTest : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    auto made = createVulkanDevice();
+    ASSERT_TRUE(made) << made.error().text();
+    s_device = made->release();
+  }
+  static void TearDownTestSuite() {
+    delete s_device;
+    s_device = nullptr;
+  }
+  /// The frame's design before the analytic scan, without renderer and points.
+  OverlayDevice::Output draw(const FrameDescription& frame, const DepthImage* scan, const ColourImage* points = nullptr) {
+    DrawList list = buildDrawList(frame, frame.camera);
+    list.image = frame.image.get();
+    list.scanDepth = scan;
+    list.pointColour = points;
+    auto output = s_device->draw(list);
+    EXPECT_TRUE(output) << output.error().text();
+    return output ? std::move(*output) : OverlayDevice::Output{};
+  }
+  static OverlayDevice* s_device;
+};
+OverlayDevice* DeviceTest::s_device = nullptr;
+
+std::size_t differingPixels(const ColourImage& a, const ColourImage& b, int least = 3) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    const Rgba8 p = a.data()[i], q = b.data()[i];
+    if (std::abs(p.r - q.r) >= least || std::abs(p.g - q.g) >= least || std::abs(p.b - q.b) >= least) ++count;
+  }
+  return count;
+}
+
+}  // namespace
+
+TEST_F(DeviceTest, EveryPixelIsVisibleHiddenOrUnknownAsTheScanSays) {
+  const FrameDescription frame = boxesFrame();
+  const DepthImage scan = analyticScan(kWidth, kHeight);
+  const auto out = draw(frame, &scan);
+  int counts[4] = {};
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      const auto state = static_cast<Visibility>(out.state.at(x, y));
+      ++counts[static_cast<int>(state)];
+      if (out.element.at(x, y) == 0) {
+        ASSERT_EQ(state, Visibility::Outside);
+        ASSERT_TRUE(std::isinf(out.designDepth.at(x, y)));
+        continue;
+      }
+      const double z = out.designDepth.at(x, y);
+      ASSERT_EQ(state, visibilityAt(scan, {x, y}, z, frame.display.depthToleranceM)) << x << " " << y << " " << z;
+      ASSERT_TRUE(x < 2 * kWidth / 3 || state == Visibility::Visible);
+    }
+  for (const int count : counts) EXPECT_GT(count, 1000);
+}
+
+TEST_F(DeviceTest, DepthAndElementAreThoseOfTheNearestFaceAlongTheExactRay) {
+  const FrameDescription frame = boxesFrame();
+  const auto out = draw(frame, nullptr);
+  const DesignModel& model = *frame.designs[0].model;
+  int checked = 0, otherElement = 0;
+  double worst = 0;
+  for (int y = 1; y < kHeight; y += 5)
+    for (int x = 1; x < kWidth; x += 5) {
+      const auto ray = frame.camera.unproject({x, y});
+      ASSERT_TRUE(ray);
+      // A tenth of a pixel aside: how fast the depth changes there.
+      const auto aside = frame.camera.unproject({x + 0.1, y + 0.1}), other = frame.camera.unproject({x + 0.1, y - 0.1});
+      ASSERT_TRUE(aside && other);
+      double nearest = std::numeric_limits<double>::infinity(), allowed = 0;
+      std::uint32_t owner = 0;
+      for (std::uint32_t e = 0; e < model.elements.size(); ++e)
+        for (std::uint32_t i = 0; i < 36; i += 3) {
+          glm::dvec3 p[3];
+          for (int k = 0; k < 3; ++k)
+            p[k] = frame.cameraFromWorld * model.world(model.triangles[model.elements[e].firstIndex + i + k]);
+          const glm::dvec3 n = glm::cross(p[1] - p[0], p[2] - p[0]);
+          const double t = glm::dot(n, p[0]) / glm::dot(n, *ray);
+          const glm::dvec3 hit = t * *ray;
+          bool inside = t > 0;
+          for (int k = 0; k < 3; ++k)
+            inside = inside && glm::dot(n, glm::cross(p[(k + 1) % 3] - p[k], hit - p[k])) >= 0;
+          if (!inside || t >= nearest) continue;
+          nearest = t;
+          owner = e + 1;
+          allowed = 1e-4 * t;
+          for (const glm::dvec3& shifted : {*aside, *other})
+            allowed += std::abs(glm::dot(n, p[0]) / glm::dot(n, shifted) - t);
+        }
+      if (owner != out.element.at(x, y)) {
+        ++otherElement;  // a pixel on a silhouette may fall to either side
+        continue;
+      }
+      if (owner == 0) continue;
+      ++checked;
+      worst = std::max(worst, std::abs(out.designDepth.at(x, y) - nearest) / allowed);
+    }
+  EXPECT_GT(checked, 800);
+  EXPECT_LE(otherElement, checked / 100);
+  EXPECT_LT(worst, 1) << "depth is off by more than a tenth of a pixel and 0.1 mm a metre";
+}
+
+TEST_F(DeviceTest, APictureTenThousandKilometresFromTheOriginIsTheSame) {
+  const auto near = draw(boxesFrame(), nullptr);
+  const auto far = draw(boxesFrame({1.0e7, 9.0e6, 500}), nullptr);
+  EXPECT_LE(differingPixels(near.colour, far.colour), near.colour.size() / 5000);
+}
+
+TEST_F(DeviceTest, TheThreeHiddenStylesDifferAndHidingShowsTheImage) {
+  const DepthImage scan = analyticScan(kWidth, kHeight);
+  FrameDescription frame = boxesFrame();
+  ColourImage pictures[3];
+  OverlayDevice::Output last;
+  for (const HiddenStyle style : {HiddenStyle::Hide, HiddenStyle::Ghost, HiddenStyle::Dash}) {
+    frame.display.hidden = style;
+    last = draw(frame, &scan);
+    pictures[static_cast<int>(style)] = last.colour;
+    keep(last.colour, "hidden-" + std::to_string(static_cast<int>(style)));
+  }
+  EXPECT_GT(differingPixels(pictures[0], pictures[1], 8), 2000u);
+  EXPECT_GT(differingPixels(pictures[1], pictures[2], 8), 2000u);
+  EXPECT_GT(differingPixels(pictures[0], pictures[2], 8), 1000u);
+  // Hide: the raw picture wherever a face is hidden, but for edges that the neighbouring element shows.
+  std::size_t hidden = 0, raw = 0;
+  for (std::size_t i = 0; i < last.state.size(); ++i) {
+    if (last.state.data()[i] != static_cast<std::uint8_t>(Visibility::Hidden)) continue;
+    ++hidden;
+    const Rgba8 a = pictures[0].data()[i], b = frame.image->data()[i];
+    if (std::abs(a.r - b.r) <= 1 && std::abs(a.g - b.g) <= 1 && std::abs(a.b - b.b) <= 1) ++raw;
+  }
+  EXPECT_GT(hidden, 1000u);
+  EXPECT_GE(raw, hidden * 97 / 100);
+}
+
+TEST_F(DeviceTest, UnknownIsDrawnInAShapeOfItsOwn) {
+  FrameDescription frame = boxesFrame();
+  frame.display.hidden = HiddenStyle::Dash;
+  const DepthImage unknown(kWidth, kHeight, std::numeric_limits<float>::quiet_NaN());
+  const DepthImage wall(kWidth, kHeight, 0.5f);
+  const auto a = draw(frame, &unknown), b = draw(frame, &wall), c = draw(frame, nullptr);
+  keep(a.colour, "all-unknown");
+  keep(b.colour, "all-hidden-dash");
+  EXPECT_GT(differingPixels(a.colour, b.colour, 8), 3000u);
+  EXPECT_GT(differingPixels(a.colour, c.colour, 8), 3000u);
+}
+
+TEST_F(DeviceTest, PassesCanBeSwitchedOff) {
+  FrameDescription frame = boxesFrame();
+  frame.display.designPass = false;
+  const auto imageAlone = draw(frame, nullptr);
+  EXPECT_EQ(differingPixels(imageAlone.colour, *frame.image, 1), 0u) << "the image alone is the image, bit for bit";
+  for (std::size_t i = 0; i < imageAlone.element.size(); ++i) ASSERT_EQ(imageAlone.element.data()[i], 0u);
+
+  frame = boxesFrame();
+  frame.display.imagePass = false;
+  const auto noImage = draw(frame, nullptr);
+  EXPECT_LT(noImage.colour.at(3, 3).r, 60);
+
+  frame = boxesFrame();
+  const auto all = draw(frame, nullptr);
+  frame.display.designEdges = false;
+  const auto noEdges = draw(frame, nullptr);
+  EXPECT_GT(differingPixels(all.colour, noEdges.colour, 8), 500u);
+  frame = boxesFrame();
+  frame.display.designFaces = false;
+  const auto noFaces = draw(frame, nullptr);
+  EXPECT_GT(differingPixels(all.colour, noFaces.colour, 8), 5000u);
+  EXPECT_EQ(noFaces.element.at(240, 160), all.element.at(240, 160)) << "picking goes on without faces";
+}
+
+TEST_F(DeviceTest, GrayscaleSwitchesTakeTheColourOutOfImageAndDesign) {
+  FrameDescription frame = boxesFrame();
+  frame.display.grayscaleImage = frame.display.grayscaleDesign = true;
+  const auto out = draw(frame, nullptr);
+  for (std::size_t i = 0; i < out.colour.size(); ++i) {
+    const Rgba8 c = out.colour.data()[i];
+    ASSERT_LE(std::abs(c.r - c.g), 1);
+    ASSERT_LE(std::abs(c.g - c.b), 1);
+  }
+}
+
+TEST_F(DeviceTest, PointsLieHalfTransparentOverTheRest) {
+  const FrameDescription frame = boxesFrame();
+  ColourImage points(kWidth, kHeight, {0, 0, 0, 0});
+  points.at(100, 50) = {255, 0, 0, 255};
+  const auto without = draw(frame, nullptr), with = draw(frame, nullptr, &points);
+  EXPECT_EQ(differingPixels(without.colour, with.colour, 1), 1u);
+  EXPECT_NEAR(with.colour.at(100, 50).r, (255 + without.colour.at(100, 50).r) / 2.0, 1.5);
+}
+
+TEST_F(DeviceTest, SelectionChangesTheLook) {
+  FrameDescription frame = boxesFrame();
+  const auto plain = draw(frame, nullptr);
+  frame.designs[0].selected = {1};
+  const auto selected = draw(frame, nullptr);
+  keep(selected.colour, "selected");
+  std::size_t ofElement = 0, changed = 0;
+  for (std::size_t i = 0; i < plain.element.size(); ++i) {
+    if (plain.element.data()[i] != 2) continue;
+    ++ofElement;
+    if (!(plain.colour.data()[i] == selected.colour.data()[i])) ++changed;
+  }
+  EXPECT_GT(changed, ofElement * 9 / 10);
+}
+
+TEST_F(DeviceTest, AnotherImageSizeIsStretchedOverTheResult) {
+  FrameDescription frame = boxesFrame();
+  frame.display.designPass = false;
+  frame.image = stripedPicture(kWidth / 4, kHeight / 4);
+  const auto out = draw(frame, nullptr);
+  EXPECT_EQ(out.colour.at(2, 2), frame.image->at(0, 0));
+  EXPECT_EQ(out.colour.at(kWidth - 3, kHeight - 3), frame.image->at(kWidth / 4 - 1, kHeight / 4 - 1));
+}
+
+TEST_F(DeviceTest, FramesOfChangingSizeFollowEachOther) {
+  for (const auto& [w, h] : {std::pair{64, 48}, {480, 320}, {31, 17}, {480, 320}}) {
+    const FrameDescription frame = boxesFrame(glm::dvec3(0), w, h);
+    EXPECT_EQ(draw(frame, nullptr).colour.width(), w);
+  }
+}
+
+TEST(OverlayRenderer, GivesAPictureWithCountsMarksAndNames) {
+  auto renderer = OverlayRenderer::create();
+  ASSERT_TRUE(renderer) << renderer.error().text();
+  EXPECT_EQ((*renderer)->deviceName().rfind("Vulkan: ", 0), 0u);
+  FrameDescription frame = boxesFrame(glm::dvec3(2.0e6, 5.0e5, 300), 1280, 800);
+  const glm::dvec3 origin = frame.designs[0].model->origin;
+  for (int i = 0; i < 6; ++i)
+    frame.stakePoints.push_back({"S" + std::to_string(100 + i), origin + glm::dvec3(i * 1.2 - 3, -2 - 0.4 * i, -1.4), "AXIS", 0.25});
+  frame.selectedStakePoints = {"S102"};
+  Annotation note;
+  note.id = {7};
+  note.kind = AnnotationKind::Callout;
+  note.anchor = AnnotationAnchor::World;
+  note.world = origin + glm::dvec3(-1.2, -1, 1.5);
+  note.text = "Formwork stands 12 mm proud here, check again before the pour";
+  note.offsetPx = {140, -120};
+  frame.annotations.push_back(note);
+  Annotation arrow;
+  arrow.id = {8};
+  arrow.kind = AnnotationKind::Arrow;
+  arrow.pixel = {300, 500};
+  arrow.offsetPx = {-120, 60};
+  arrow.text = "crack";
+  frame.annotations.push_back(arrow);
+  frame.selectedAnnotation = {8};
+  frame.residuals.push_back({{700, 300}, {703, 298}, "P1"});
+  frame.residualScale = 20;
+  frame.width = 960;
+  frame.height = 600;
+  const auto picture = (*renderer)->render(frame);
+  ASSERT_TRUE(picture) << picture.error().text();
+  keep(picture->colour, "marks");
+  EXPECT_EQ(picture->colour.width(), 960);
+  ASSERT_EQ(picture->elements.size(), 4u);
+  std::uint64_t total = 0, covered = 0;
+  for (const ElementPixels& e : picture->elements) {
+    total += e.visible;
+    EXPECT_EQ(e.hidden + e.unknown, 0u) << "no scan hides anything";
+  }
+  for (std::size_t i = 0; i < picture->element.size(); ++i) covered += picture->element.data()[i] != 0;
+  EXPECT_EQ(total, covered);
+  EXPECT_EQ(picture->firstElementOfLayer, std::vector<std::uint32_t>{0});
+
+  const Camera scaled = frame.camera.scaledTo(960, 600);
+  EXPECT_EQ(annotationAt(frame, scaled, {(300 + 0.5) * 0.75 - 0.5, 500 * 0.75}), AnnotationId{8});
+  EXPECT_EQ(annotationAt(frame, scaled, {950, 590}), AnnotationId{});
+  const auto tip = scaled.project(frame.cameraFromWorld * note.world);
+  ASSERT_TRUE(tip);
+  EXPECT_EQ(annotationAt(frame, scaled, *tip + glm::dvec2(140, -120) * 0.75 + glm::dvec2(20, 0)), AnnotationId{7});
+
+  frame.stakePoints.clear();
+  frame.annotations.clear();
+  frame.residuals.clear();
+  const auto bare = (*renderer)->render(frame);
+  ASSERT_TRUE(bare);
+  EXPECT_GT(differingPixels(bare->colour, picture->colour, 8), 3000u);
+}
+
+TEST(OverlayRenderer, RefusesAFrameWithoutCameraOrOfAnImpossibleSize) {
+  auto renderer = OverlayRenderer::create();
+  ASSERT_TRUE(renderer);
+  EXPECT_FALSE((*renderer)->render({}));
+  FrameDescription frame = boxesFrame();
+  frame.width = 1'000'000;
+  EXPECT_FALSE((*renderer)->render(frame));
+  frame = boxesFrame();
+  frame.cameraFromWorld.translation.x = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_FALSE((*renderer)->render(frame));
+}
+
+}  // namespace alidade
