@@ -91,8 +91,8 @@ Image<std::uint8_t> FrameRenderer::findEdges(const Image<Sample>& samples) const
     if (a.object != b.object || a.sunlit != b.sunlit) return true;
     if (a.object == kSkyObject) return false;
     if (glm::dot(a.normal, b.normal) < 0.9f || std::abs(a.depth - b.depth) > 0.06 * a.depth) return true;
-    const glm::vec3 d = glm::abs(displayColour(a.radiance) - displayColour(b.radiance));
-    return d.x + d.y + d.z > 0.22f;
+    const glm::vec3 d = glm::abs(glm::sqrt(a.radiance) - glm::sqrt(b.radiance));
+    return d.x + d.y + d.z > 0.25f;
   };
   for (int y = 0; y < samples.height(); ++y)
     for (int x = 0; x < samples.width(); ++x) {
@@ -121,8 +121,8 @@ Rgba8 FrameRenderer::develop(const glm::vec3& radiance, int x, int y, int frame)
   const float vignetting = 1.0f / ((1.0f + 0.30f * r2) * (1.0f + 0.30f * r2));
   const auto noisy = [&random](float value) {
     // Shot noise grows with the light (sigma² = value / full well), read noise is constant.
-    const double sigma = std::sqrt(std::max(0.0f, value) * 1.5e-4 + 9e-6);
-    return std::max(0.0f, value + static_cast<float>(sigma * random.normal()));
+    const float sigma = std::sqrt(std::max(0.0f, value) * 1.5e-4f + 9e-6f);
+    return std::max(0.0f, value + sigma * random.quickNormal());
   };
   glm::vec3 light = radiance * vignetting;
   if (m_colour) {

@@ -28,6 +28,21 @@ glm::dvec3 sphereDirection(int i, int count) {
   return {r * std::cos(angle), r * std::sin(angle), z};
 }
 
+/// The display curve over the square root of the radiance, from 0 to kCurveTop.
+constexpr float kCurveSteps = 1024.0f;
+constexpr float kCurveTop = 3.0f;
+
+std::vector<float> displayCurve() {
+  std::vector<float> curve;
+  for (int i = 0; i <= static_cast<int>(kCurveSteps); ++i) {
+    const float root = static_cast<float>(i) * kCurveTop / kCurveSteps;
+    const float x = root * root * 0.80f;
+    const float shouldered = x < 0.6f ? x : 0.6f + 0.4f * (1.0f - std::exp(-(x - 0.6f) / 0.4f));
+    curve.push_back(shouldered <= 0.0031308f ? 12.92f * shouldered : 1.055f * std::pow(shouldered, 1.0f / 2.4f) - 0.055f);
+  }
+  return curve;
+}
+
 float skyWeight(const glm::dvec3& d) { return d.z > -0.05 ? 1.0f : 0.28f; }
 
 }  // namespace
@@ -128,11 +143,12 @@ glm::vec3 Lighting::sky(const glm::vec3& direction) {
 }
 
 glm::vec3 displayColour(const glm::vec3& radiance) {
+  static const std::vector<float> curve = displayCurve();
   glm::vec3 out;
   for (int i = 0; i < 3; ++i) {
-    const float x = std::max(0.0f, radiance[i]) * 0.80f;
-    const float shouldered = x < 0.6f ? x : 0.6f + 0.4f * (1.0f - std::exp(-(x - 0.6f) / 0.4f));
-    out[i] = shouldered <= 0.0031308f ? 12.92f * shouldered : 1.055f * std::pow(shouldered, 1.0f / 2.4f) - 0.055f;
+    const float x = glm::clamp(std::sqrt(std::max(0.0f, radiance[i])) * kCurveSteps / kCurveTop, 0.0f, kCurveSteps - 1.001f);
+    const int step = static_cast<int>(x);
+    out[i] = glm::mix(curve[step], curve[step + 1], x - static_cast<float>(step));
   }
   return out;
 }

@@ -34,6 +34,12 @@ class Random {
     const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));
     return radius * std::cos(2.0 * std::numbers::pi * uniform());
   }
+  /// Nearly normal, within ±3.5 (the sum of four uniforms): for millions of pixels.
+  float quickNormal() {
+    const std::uint64_t bits = next();
+    const auto sum = static_cast<float>((bits & 0xFFFF) + (bits >> 16 & 0xFFFF) + (bits >> 32 & 0xFFFF) + (bits >> 48));
+    return (sum * 0x1.0p-16f - 2.0f) * 1.7320508f;
+  }
 
  private:
   std::uint64_t m_state;

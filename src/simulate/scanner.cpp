@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include <fmt/format.h>
 
@@ -43,36 +44,12 @@ std::vector<ScanStation> placeStations(const SiteModel& site, const ScannerModel
   return stations;
 }
 
-/// The step at which about `points` shots hit something, from a coarse scan of each station.
-double chooseStep(std::vector<ScanStation>& stations, const RayScene& scene, const ScannerModel& model,
-                  std::uint64_t points) {
-  const double span = model.highestElevation - model.lowestElevation;
-  double hitShare = 0;
-  for (ScanStation& station : stations) {
-    station.rows = 210;
-    station.columns = 500;
-    std::vector<std::uint32_t> hits(station.columns, 0);
-    parallelFor(station.columns, 8, [&](std::size_t first, std::size_t last, int) {
-      for (std::size_t column = first; column < last; ++column)
-        for (std::uint32_t row = 0; row < station.rows; ++row) {
-          const glm::dvec3 direction =
-              station.siteFromScanner.rotation * shotDirection(model, station, row, static_cast<std::uint32_t>(column));
-          hits[column] += scene.occluded(station.siteFromScanner.translation, direction, model.rangeMeters);
-        }
-    });
-    std::uint64_t sum = 0;
-    for (const auto n : hits) sum += n;
-    hitShare += static_cast<double>(sum) / (static_cast<double>(station.rows) * station.columns);
-  }
-  return std::sqrt(hitShare * span * 2.0 * std::numbers::pi / static_cast<double>(points));
-}
-
 /// Measures the shots of one station; thread-safe.
 class Shooter {
  public:
-  Shooter(const SiteModel& site, const RayScene& scene, const Lighting& lighting, const ScannerModel& model,
+  Shooter(const RayScene& scene, const Lighting& lighting, const ScannerModel& model,
           std::uint32_t seed, bool colour)
-      : m_site(site), m_scene(scene), m_lighting(lighting), m_model(model), m_seed(seed), m_colour(colour) {}
+      : m_scene(scene), m_lighting(lighting), m_model(model), m_seed(seed), m_colour(colour) {}
 
   /// Appends the points of one column; returns how many are mixed pixels.
   std::uint32_t column(const ScanStation& station, int index, std::uint32_t column, std::vector<LasPoint>& out) const {
@@ -130,13 +107,36 @@ class Shooter {
     return glm::u8vec3(glm::clamp(255.0f * shown + 0.5f, 0.0f, 255.0f));
   }
 
-  const SiteModel& m_site;
   const RayScene& m_scene;
   const Lighting& m_lighting;
   const ScannerModel& m_model;
   std::uint32_t m_seed;
   bool m_colour;
 };
+
+/// The step at which about `points` shots come back, from a coarse scan of each station.
+double chooseStep(std::vector<ScanStation>& stations, const Shooter& shooter, const ScannerModel& model,
+                  std::uint64_t points) {
+  double returned = 0;
+  for (std::size_t i = 0; i < stations.size(); ++i) {
+    ScanStation& station = stations[i];
+    station.rows = 120;
+    station.columns = 286;
+    std::vector<std::size_t> hits(station.columns, 0);
+    parallelFor(station.columns, 8, [&](std::size_t first, std::size_t last, int) {
+      std::vector<LasPoint> column;
+      for (std::size_t c = first; c < last; ++c) {
+        column.clear();
+        shooter.column(station, static_cast<int>(i), static_cast<std::uint32_t>(c), column);
+        hits[c] = column.size();
+      }
+    });
+    const double shots = static_cast<double>(station.rows) * station.columns;
+    returned += static_cast<double>(std::accumulate(hits.begin(), hits.end(), std::size_t{0})) / shots;
+  }
+  const double span = model.highestElevation - model.lowestElevation;
+  return std::sqrt(returned * span * 2.0 * std::numbers::pi / static_cast<double>(points));
+}
 
 /// One station, a run of columns at a time.
 Result<void> scanStation(ScanStation& station, int index, const Shooter& shooter, LasWriter& las,
@@ -170,7 +170,8 @@ Result<ScanSummary> writeScan(const std::string& path, const SiteModel& site, co
                               std::uint32_t seed, bool colour, const Progress& progress) {
   ScanSummary summary;
   summary.stations = placeStations(site, model, seed);
-  summary.stepRadians = chooseStep(summary.stations, scene, model, points);
+  const Shooter shooter(scene, lighting, model, seed, colour);
+  summary.stepRadians = chooseStep(summary.stations, shooter, model, points);
   const double span = model.highestElevation - model.lowestElevation;
   for (ScanStation& station : summary.stations) {
     station.rows = static_cast<std::uint32_t>(std::max(2L, std::lround(span / summary.stepRadians)));
@@ -180,7 +181,6 @@ Result<ScanSummary> writeScan(const std::string& path, const SiteModel& site, co
   LasWriter las;
   const glm::dvec3 origin = site.worldFromSite.translation;
   if (auto opened = las.open(path, origin, coordinateSystemAt(origin)); !opened) return fail(opened.error());
-  const Shooter shooter(site, scene, lighting, model, seed, colour);
   const double share = 1.0 / static_cast<double>(summary.stations.size());
   for (std::size_t i = 0; i < summary.stations.size(); ++i) {
     auto scanned = scanStation(summary.stations[i], static_cast<int>(i), shooter, las,
