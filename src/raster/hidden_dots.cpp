@@ -38,7 +38,8 @@ int levelOf(float spacingPx) {
   return level;
 }
 
-/// The nearest dots a cell, then the walls around it. w is inverse depth: larger is nearer.
+/// The nearest dots a cell, then the walls around it. w is inverse depth: larger is nearer. A dot counts at
+/// the one level of its surface's spacing: at coarser ones a thin post would grow into a wall.
 class WallPyramid {
  public:
   WallPyramid(int width, int height) : m_width(width), m_height(height) {
@@ -76,13 +77,6 @@ class WallPyramid {
         const int k = levelOf(spacing[x]);
         float& cell = m_nearest[k].row(y >> k)[x >> k];
         cell = std::max(cell, w[x]);
-      }
-    }
-    for (int k = 2; k <= kLevels; ++k) {
-      for (int y = top >> (k - 1); y < cells(bottom, k - 1); ++y) {
-        const float* fine = m_nearest[k - 1].row(y);
-        float* coarse = m_nearest[k].row(y >> 1);
-        for (int x = 0; x < cells(m_width, k - 1); ++x) coarse[x >> 1] = std::max(coarse[x >> 1], fine[x]);
       }
     }
   }

@@ -17,6 +17,12 @@ struct SplatView {
   Lens<float> lens;
   float fx, fy, cx, cy;
   float foldBackSquared;
+  /// A lens need not fold back at one radius all around. Runs that reach beyond surelyInsideSquared ask
+  /// inDomain(camera, x, y) for each point out there; the others do not pay for it.
+  bool checkDomain;
+  float surelyInsideSquared;
+  const void* camera;
+  bool (*inDomain)(const void* camera, float x, float y);
   int width, height;
   /// Footprint in pixels: clamp(sizeTimesDepth / z, smallest, largest).
   float sizeTimesDepth, smallest, largest;

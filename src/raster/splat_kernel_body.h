@@ -63,7 +63,14 @@ ALIDADE_LENS_INLINE Projected project(const SplatView& view, const std::uint16_t
   p.v = view.fy * yd + view.cy;
   p.z = pz;
   // NaN fails each comparison, so a point that goes wrong anywhere is left out.
-  p.valid = (pz > 1e-6f) & (x * x + y * y <= view.foldBackSquared);
+  const Floats r2 = x * x + y * y;
+  p.valid = (pz > 1e-6f) & (r2 <= view.foldBackSquared);
+  if (view.checkDomain) {
+    const Ints doubtful = p.valid & (r2 > view.surelyInsideSquared);
+    for (int i = 0; i < kLanes; ++i) {
+      if (doubtful[i] && !view.inDomain(view.camera, x[i], y[i])) p.valid[i] = 0;
+    }
+  }
   p.colour = zc >> 16;
   return p;
 }

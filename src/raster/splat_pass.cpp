@@ -9,6 +9,7 @@
 #include <memory>
 #include <mutex>
 #include <new>
+#include <numbers>
 
 #include "base/parallel.h"
 
@@ -113,6 +114,38 @@ void drawPlanes(std::span<const SplatRun> runs, int width, int height, SplatPayl
   parallelFor(pixels, kPixelsPerBand, [&](std::size_t first, std::size_t last, int) { merge(planes, first, last); });
 }
 
+bool inDomain(const void* camera, float x, float y) {
+  return static_cast<const Camera*>(camera)->project({x, y, 1.0}).has_value();
+}
+
+/// A radius within which the lens holds in every direction: the domain is star-shaped, so a ring of
+/// good points vouches for its inside.
+double surelyInsideRadius(const Camera& camera) {
+  const double fold = camera.foldBackRadius();
+  if (!std::isfinite(fold)) return fold;
+  constexpr int kDirections = 360;
+  for (const double part : {0.99, 0.95, 0.9, 0.8, 0.6, 0.4, 0.2}) {
+    bool whole = true;
+    for (int i = 0; i < kDirections && whole; ++i) {
+      const double angle = 2 * std::numbers::pi * i / kDirections;
+      whole = camera.project({part * fold * std::cos(angle), part * fold * std::sin(angle), 1.0}).has_value();
+    }
+    // Between two directions the border may dip a little.
+    if (whole) return 0.98 * part * fold;
+  }
+  return 0.0;
+}
+
+/// True where a point of the box may lie beyond `radius` on the image plane: the radius is largest at
+/// a corner, once all are before the eye.
+bool reachesBeyond(double radius, const Bounds& bounds, const RigidTransform& cameraFromWorld) {
+  for (int i = 0; i < 8; ++i) {
+    const glm::dvec3 corner = cameraFromWorld * bounds.corner(i);
+    if (!(corner.z > 0.0) || glm::length(glm::dvec2(corner)) > radius * corner.z) return true;
+  }
+  return false;
+}
+
 /// Smallest depth that a point of the box can have, metres; 0 where the box reaches the eye's plane.
 double nearestDepth(const Bounds& bounds, const glm::dmat3& rotation, const glm::dvec3& translation) {
   const glm::dvec3 axis(rotation[0][2], rotation[1][2], rotation[2][2]);
@@ -138,6 +171,11 @@ SplatView baseView(const Camera& camera, const SplatOptions& options) {
   view.cy = static_cast<float>(in.cy);
   // A hair inside: a float's rounding must not let a point from beyond the fold in.
   view.foldBackSquared = static_cast<float>(camera.foldBackRadius() * camera.foldBackRadius() * (1.0 - 1e-6));
+  const double inside = surelyInsideRadius(camera);
+  view.surelyInsideSquared = static_cast<float>(inside * inside);
+  view.checkDomain = view.surelyInsideSquared < view.foldBackSquared;
+  view.camera = &camera;
+  view.inDomain = inDomain;
   view.width = camera.width();
   view.height = camera.height();
   view.round = options.round;
@@ -162,6 +200,8 @@ SplatRun makeRun(const PointStore& store, const SelectedRange& range, const Rigi
     }
     run.view.t[row] = static_cast<float>(origin[row]);
   }
+  run.view.checkDomain =
+      base.checkDomain && reachesBeyond(std::sqrt(base.surelyInsideSquared), node.bounds, cameraFromWorld);
   const double focal = std::sqrt(std::abs(static_cast<double>(base.fx) * base.fy));
   const double sizeTimesDepth = options.fixedSize ? 0.0 : options.pointSize * range.spacing * focal;
   run.view.sizeTimesDepth = static_cast<float>(sizeTimesDepth);

@@ -53,7 +53,8 @@ struct SplatPlanes {
   }
 };
 
-/// The camera's and the footprint's part of the view; runs of one node add m, t and the size.
+/// The camera's and the footprint's part of the view; runs of one node add m, t and the size. Refers to
+/// the camera, which must outlive the drawing.
 SplatView baseView(const Camera& camera, const SplatOptions& options);
 
 /// The range's points, seen by the camera: the double sums of origin and pose done here.

@@ -17,10 +17,10 @@ namespace {
 constexpr int kLevels = 6;  ///< cells of 2 to 64 pixels
 /// The tightness asked of a fit, as a part of the depth and in metres: the scan's own noise and a
 /// gentle curve pass, a step of some four times as much does not.
-constexpr float kResidual = 0.002f;
-constexpr float kResidualMeters = 0.008f;
+constexpr float kResidual = 0.0025f;
+constexpr float kResidualMeters = 0.010f;
 /// Cells up to this many levels above the one of the dots' spacing may fill.
-constexpr float kLevelSlack = 1.25f;
+constexpr float kLevelSlack = 1.5f;
 
 /// Sums over the dots of a cell; x and y in pixels from the cell's middle, w the inverse depth.
 struct Moments {
@@ -189,8 +189,12 @@ class Filler {
       }
     }
     if (n < 4 || level / n + kLevelSlack < static_cast<float>(k)) return;
-    const int sides = (cell[1][0].n > 0) + (cell[1][2].n > 0) + (cell[0][1].n > 0) + (cell[2][1].n > 0);
-    if (cell[1][1].n == 0 && sides < 3) return;
+    // Dots on all four sides, or the picture's border: a silhouette is not guessed outwards.
+    const auto holds = [&](int i, int j) {
+      return cell[1 + j][1 + i].n > 0 || !moments.contains(cx + i, cy + j);
+    };
+    const bool enclosed = holds(-1, 0) && holds(1, 0) && holds(0, -1) && holds(0, 1);
+    if (!enclosed) return;
     if (!hasGap(k, cx, cy)) return;
     const auto size = static_cast<float>(1 << k);
     const Plane plane = planeAround(cell, size);
