@@ -348,7 +348,7 @@ void scaleLimits(ChildOptions& options, std::uint64_t fileBytes, std::uint64_t m
   const double mebi = static_cast<double>(fileBytes) / (1 << 20);
   options.memoryBytes = kBase + std::min(kMost, fileBytes > kMost / memoryPerByte ? kMost : fileBytes * memoryPerByte);
   options.resultBytes = options.memoryBytes / 2;
-  options.cpuSecs = 60 + secsPerMiB * mebi;
+  options.cpuSecs = 15 + secsPerMiB * mebi;
   options.wallSecs = 4 * options.cpuSecs;
 }
 

@@ -4,8 +4,11 @@
 #include "survey/design_model.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <unordered_map>
+#include <utility>
+#include <vector>
 
 namespace alidade {
 
@@ -92,6 +95,11 @@ struct EdgeUse {
 
 using EdgeUses = std::unordered_map<std::uint64_t, EdgeUse>;
 
+std::uint64_t edgeKey(std::uint32_t a, std::uint32_t b) {
+  const auto [low, high] = std::minmax(a, b);
+  return (static_cast<std::uint64_t>(low) << 32) | high;
+}
+
 EdgeUses edgeUses(const DesignModel& model, const DesignElement& element, double cosine, double weld) {
   EdgeUses uses;
   Welder welder(model.vertices, weld);
@@ -105,21 +113,74 @@ EdgeUses edgeUses(const DesignModel& model, const DesignElement& element, double
     if (!(length > 0)) continue;
     for (int side = 0; side < 3; ++side) {
       const std::uint32_t from = corner[side], to = corner[(side + 1) % 3];
-      const auto [low, high] = std::minmax(from, to);
-      uses[(static_cast<std::uint64_t>(low) << 32) | high].add(cross / length, from < to, cosine);
+      uses[edgeKey(from, to)].add(cross / length, from < to, cosine);
     }
   }
   return uses;
+}
+
+/// Vertices of `candidates` inside the edge from a to b, in order along it.
+std::vector<std::uint32_t> verticesOn(std::uint32_t a, std::uint32_t b, const std::vector<std::uint32_t>& candidates,
+                                      const std::vector<glm::vec3>& vertices, double weld) {
+  const glm::dvec3 start(vertices[a]), way = glm::dvec3(vertices[b]) - start;
+  const double length = glm::length(way);
+  std::vector<std::pair<double, std::uint32_t>> found;
+  for (const std::uint32_t v : candidates) {
+    if (v == a || v == b) continue;
+    const glm::dvec3 offset = glm::dvec3(vertices[v]) - start;
+    const double along = glm::dot(offset, way) / length;
+    if (along > weld && along < length - weld && glm::length(offset - way * (along / length)) <= weld)
+      found.emplace_back(along, v);
+  }
+  std::sort(found.begin(), found.end());
+  std::vector<std::uint32_t> result;
+  for (const auto& each : found) result.push_back(each.second);
+  return result;
+}
+
+/// Where one long edge meets several short ones (T-junctions, as solids cut out of each other have them),
+/// each has one triangle and looks like a border. The long ones are cut at the vertices on them, so that
+/// the pieces find their partners.
+void cutAtJunctions(EdgeUses& uses, const std::vector<glm::vec3>& vertices, double cosine, double weld) {
+  constexpr std::size_t kMost = 4000;  // the search is quadratic, and a surface with more is truly open
+  std::vector<std::uint64_t> borders;
+  std::vector<std::uint32_t> ends;
+  for (const auto& [key, use] : uses) {
+    if (use.count != 1) continue;
+    borders.push_back(key);
+    ends.push_back(static_cast<std::uint32_t>(key >> 32));
+    ends.push_back(static_cast<std::uint32_t>(key));
+  }
+  if (borders.size() > kMost) return;
+  std::sort(ends.begin(), ends.end());
+  ends.erase(std::unique(ends.begin(), ends.end()), ends.end());
+  for (const std::uint64_t key : borders) {
+    const auto low = static_cast<std::uint32_t>(key >> 32), high = static_cast<std::uint32_t>(key);
+    std::vector<std::uint32_t> path = verticesOn(low, high, ends, vertices, weld);
+    if (path.empty()) continue;
+    const EdgeUse use = uses[key];
+    uses.erase(key);
+    path.push_back(high);
+    std::uint32_t from = low;
+    for (const std::uint32_t to : path) {
+      // The piece runs the way the whole did, whichever of its ends has the lower index.
+      uses[edgeKey(from, to)].add(use.normal, use.upward == (from < to), cosine);
+      from = to;
+    }
+  }
 }
 
 }  // namespace
 
 void findFeatureEdges(DesignModel& model, double creaseAngle, double weld) {
   model.edges.clear();
+  const double cosine = std::cos(creaseAngle);
   for (DesignElement& element : model.elements) {
     element.firstEdge = static_cast<std::uint32_t>(model.edges.size());
+    EdgeUses uses = edgeUses(model, element, cosine, weld);
+    cutAtJunctions(uses, model.vertices, cosine, weld);
     std::vector<std::uint64_t> keys;
-    for (const auto& [key, use] : edgeUses(model, element, std::cos(creaseAngle), weld))
+    for (const auto& [key, use] : uses)
       if (use.count == 1 || use.crease) keys.push_back(key);
     std::sort(keys.begin(), keys.end());
     for (const auto key : keys)

@@ -65,6 +65,7 @@ std::string valueOf(const std::shared_ptr<T>& label) {
 std::string readable(const std::shared_ptr<IfcValue>& value) {
   if (!value) return {};
   std::stringstream step;
+  step.precision(17);  // the library writes with what the stream has, and six digits lose a map's metres
   value->getStepParameter(step, false);
   const std::string text = step.str();
   if (text == ".T.") return "true";
@@ -73,7 +74,7 @@ std::string readable(const std::shared_ptr<IfcValue>& value) {
   if (!text.empty() && text.front() == '\'') {
     if (const auto object = std::dynamic_pointer_cast<BuildingObject>(value)) return utf8(object->toString());
   }
-  // Fewest digits that stand for the same number: the library prints doubles with trailing noise.
+  // Fewest digits that stand for the same number.
   char* end = nullptr;
   const double number = std::strtod(text.c_str(), &end);
   if (!text.empty() && end == text.c_str() + text.size() && std::isfinite(number)) {

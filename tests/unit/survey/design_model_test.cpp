@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the Alidade authors
 // SPDX-License-Identifier: BSD-3-Clause
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "survey/design_builder.h"
@@ -46,6 +48,34 @@ TEST(FeatureEdges, FlatTrianglesWoundAgainstEachOtherMakeNoEdgeBetweenThem) {
   const auto model = builder.finish(summary);
   ASSERT_TRUE(model);
   EXPECT_EQ(model->edges.size(), 4u);
+}
+
+TEST(FeatureEdges, OneLongSideAgainstTwoShortOnesInAPlaneIsNoEdge) {
+  DesignBuilder builder;
+  builder.beginElement({});
+  builder.addTriangle({0, 0, 0}, {2, 0, 0}, {1, -1, 0});
+  builder.addTriangle({0, 0, 0}, {0.5, 1, 0}, {0.75, 0, 0});
+  builder.addTriangle({0.75, 0, 0}, {1.5, 1, 0}, {2, 0, 0});
+  DesignBuilder::Summary summary;
+  const auto model = builder.finish(summary);
+  ASSERT_TRUE(model);
+  EXPECT_EQ(model->edges.size(), 6u);  // two sides of each triangle
+}
+
+TEST(FeatureEdges, OneLongSideAgainstTwoShortOnesAcrossACornerIsDrawnOnce) {
+  DesignBuilder builder;
+  builder.beginElement({});
+  builder.addTriangle({0, 0, 0}, {1, -1, 0}, {2, 0, 0});
+  builder.addTriangle({0, 0, 0}, {0.75, 0, 0}, {0.5, 0, 1});
+  builder.addTriangle({0.75, 0, 0}, {2, 0, 0}, {1.5, 0, 1});
+  DesignBuilder::Summary summary;
+  const auto model = builder.finish(summary);
+  ASSERT_TRUE(model);
+  double along = 0;
+  for (const auto& e : model->edges)
+    if (std::abs(model->world(e[0]).y) + std::abs(model->world(e[1]).y) + std::abs(model->world(e[0]).z) + std::abs(model->world(e[1]).z) < 1e-6)
+      along += glm::distance(model->world(e[0]), model->world(e[1]));
+  EXPECT_NEAR(along, 2.0, 1e-6);
 }
 
 TEST(FeatureEdges, CornersThatDifferByLessThanTheWeldCountAsOneWhereverTheyLie) {
