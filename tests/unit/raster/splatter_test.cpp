@@ -103,10 +103,11 @@ TEST(Splatter, AgreesWithADoublePrecisionReferenceThroughEveryLens) {
     for (std::size_t i = 0; i < drawn.depth.size(); ++i) {
       const float z = drawn.depth.data()[i];
       const float low = expected.depthIfBorderPointsCome.data()[i], high = expected.depthIfBorderPointsGo.data()[i];
-      ASSERT_GE(z, low * (1 - 3e-6f)) << name << " pixel " << i;
-      ASSERT_TRUE(z <= high * (1 + 3e-6f)) << name << " pixel " << i;
+      // Sums of some 20 m in floats: 2 micrometres, and a few roundings of z itself.
+      ASSERT_GE(z, low * (1 - 1e-6f) - 2e-6f) << name << " pixel " << i;
+      ASSERT_TRUE(z <= high * (1 + 1e-6f) + 2e-6f) << name << " pixel " << i;
       covered += std::isfinite(z);
-      exact += std::isfinite(z) && std::abs(z - expected.depth.data()[i]) <= 3e-6f * z;
+      exact += std::isfinite(z) && std::abs(z - expected.depth.data()[i]) <= 1e-6f * z + 2e-6f;
     }
     ASSERT_GT(covered, 20'000u) << name;
     EXPECT_GT(exact, 0.99 * covered) << name;
