@@ -10,11 +10,13 @@
 #include "overlay_frame.glsl"
 
 layout(set = 0, binding = 3) uniform sampler2D scanDepth;
+layout(set = 0, binding = 4) uniform sampler2D faceDepth;
 
 layout(location = 0) noperspective in float across;
 layout(location = 1) in float along;
 layout(location = 2) in float depth;
 layout(location = 3) flat in uint element;
+layout(location = 4) flat in vec2 sideways;
 
 layout(location = 0) out vec2 outCover;
 layout(location = 1) out uint outElement;
@@ -28,7 +30,22 @@ float dashed(float pixels, float drawn) {
   return fract(along / period) < drawn ? 1.0 : 0.0;
 }
 
+// An edge is in front where one of the four pixels about the line itself shows a face that is not nearer.
+// On the face that it bounds, however steep, one of them always is; a bias that did the same would
+// push that face behind others.
+bool isBehindFaces() {
+  vec2 line = gl_FragCoord.xy - across * sideways - 0.5;
+  ivec2 low = ivec2(floor(line)), last = ivec2(frame.lens.domain.zw) - 1;
+  float farthest = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    ivec2 at = clamp(low + ivec2(i & 1, i >> 1), ivec2(0), last);
+    farthest = max(farthest, texelFetch(faceDepth, at, 0).r);
+  }
+  return depth > farthest * frame.view.z;
+}
+
 void main() {
+  if (isBehindFaces()) discard;
   uint state = stateOf(depth, texelFetch(scanDepth, ivec2(gl_FragCoord.xy), 0).r);
   float strength = 1.0, casing = 0.55;
   if (state == stateUnknown) {

@@ -15,6 +15,7 @@ layout(location = 0) noperspective out float outAcross;
 layout(location = 1) out float outAlong;
 layout(location = 2) out float outDepth;
 layout(location = 3) flat out uint outElement;
+layout(location = 4) flat out vec2 outSideways;
 
 vec3 positionOf(uint vertex) {
   return vec3(uintBitsToFloat(words[5u * vertex]), uintBitsToFloat(words[5u * vertex + 1u]),
@@ -34,9 +35,8 @@ void main() {
   uint vertex = 2u * edge + end;
   vec3 p = end == 0u ? a : b;
   float reach = frame.lines.y + 0.5;
-  vec2 pixel = (end == 0u ? pixelA : pixelB) + side * reach * vec2(-towards.y, towards.x);
-  gl_Position = clipPosition(pixel, p.z);
-  gl_Position.z *= frame.view.z;
+  outSideways = vec2(-towards.y, towards.x);
+  gl_Position = clipPosition((end == 0u ? pixelA : pixelB) + side * reach * outSideways, p.z);
   outAcross = side * reach;
   outAlong = uintBitsToFloat(words[5u * vertex + 4u]);
   outDepth = p.z;

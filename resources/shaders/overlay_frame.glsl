@@ -16,7 +16,7 @@ layout(std140, set = 0, binding = 0) uniform FrameBlock {
   vec4 picture;  // 1 where there is an image, 1: image gray, 1: design gray, 1 where image and result agree in size
   vec4 scan;     // 1 where the scan hides, tolerance in metres, hidden style, 1: point pass
   vec4 lines;    // half width of an edge and of its casing in pixels, pattern scale, 1: edges
-  vec4 view;     // near plane in metres, 1: faces, nearer factor of edges, pixels of a metre at depth 1 m
+  vec4 view;     // near plane in metres, 1: faces, depth slack of edges, pixels of a metre at depth 1 m
 } frame;
 
 struct ElementStyle {

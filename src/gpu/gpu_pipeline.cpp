@@ -96,8 +96,6 @@ Result<PipelineHandle> createGraphics(VkDevice device, const GpuGraphicsDescript
   auto raster = stamped<VkPipelineRasterizationStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO);
   raster.cullMode = VK_CULL_MODE_NONE;
   raster.lineWidth = 1;
-  raster.depthBiasEnable = what.depthSlopeBias != 0;
-  raster.depthBiasSlopeFactor = what.depthSlopeBias;
   auto samples = stamped<VkPipelineMultisampleStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO);
   samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
   auto depth = stamped<VkPipelineDepthStencilStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO);

@@ -46,7 +46,6 @@ struct GpuGraphicsDescription {
   std::vector<GpuColourTarget> targets;
   bool depthTest = false;                          ///< reversed: greater is nearer
   bool depthWrite = false;
-  float depthSlopeBias = 0;                        ///< times the polygon's depth slope; < 0 pushes away
   std::vector<GpuBindingKind> bindings;            ///< binding = index
   std::vector<std::uint32_t> constants;
 };

@@ -24,7 +24,7 @@ namespace {
 const QColor kStakeColour(0, 200, 255);
 const QColor kSelectionColour(255, 140, 13);
 const QColor kResidualColour(255, 60, 60);
-const QColor kCasing(10, 14, 20, 170);
+const QColor kCasing(10, 14, 20, 205);
 
 QPointF point(const glm::dvec2& p) { return {p.x + 0.5, p.y + 0.5}; }  // QPainter's origin is the corner
 
@@ -149,7 +149,7 @@ void Painter::text(const TextBlock& block, const QRectF& box, const QFont& font,
     y += metrics.height();
   }
   m_paint.setBrush(Qt::NoBrush);
-  m_paint.setPen(QPen(kCasing, 3.2 * m_scale, Qt::SolidLine, Qt::RoundCap, Qt::RoundJoin));
+  m_paint.setPen(QPen(kCasing, 3.6 * m_scale, Qt::SolidLine, Qt::RoundCap, Qt::RoundJoin));
   m_paint.drawPath(path);
   m_paint.fillPath(path, colour);
 }

@@ -14,8 +14,8 @@ namespace {
 constexpr float kEdgeHalfWidthPx = 0.75f;
 constexpr float kCasingHalfWidthPx = 1.75f;
 
-/// Edges lie in the faces that they bound: this much nearer they win without showing through walls.
-constexpr float kEdgeNearer = 1.0005f;
+/// Edges lie in the faces that they bound: rounding must not put them behind.
+constexpr float kEdgeSlack = 1.0005f;
 
 float flag(bool on) { return on ? 1.0f : 0.0f; }
 
@@ -38,7 +38,7 @@ FrameUniform frameUniform(const DrawList& list) {
   u.scan = {flag(list.scanDepth != nullptr), d.depthToleranceM, static_cast<float>(d.hidden),
             flag(list.pointColour != nullptr)};
   u.lines = {scale * kEdgeHalfWidthPx, scale * kCasingHalfWidthPx, scale, flag(d.designEdges && d.designPass)};
-  u.view = {LensError::kNearM, flag(d.designFaces), kEdgeNearer, list.camera.intrinsics().fx};
+  u.view = {LensError::kNearM, flag(d.designFaces), kEdgeSlack, list.camera.intrinsics().fx};
   return u;
 }
 

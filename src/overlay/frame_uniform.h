@@ -20,7 +20,7 @@ struct FrameUniform {
   glm::vec4 picture;  ///< 1: image there, 1: image gray, 1: design gray, 1: image of the result's size
   glm::vec4 scan;     ///< 1: the scan hides, tolerance (m), hidden style, 1: point pass
   glm::vec4 lines;    ///< half width of edge and casing (px), pattern scale, 1: edges
-  glm::vec4 view;     ///< near plane (m), 1: faces, nearer factor of edges, pixels of a metre at depth 1 m
+  glm::vec4 view;     ///< near plane (m), 1: faces, depth slack of edges, pixels of a metre at depth 1 m
 };
 static_assert(offsetof(FrameUniform, light) == 176);
 static_assert(offsetof(FrameUniform, shading) == 192);

@@ -104,25 +104,27 @@ void LensError::findCurvature() {
   m_curvature = std::isfinite(largest) ? safety * largest / 8 : 1e12;
 }
 
-double LensError::sag(const LensPoint& one, const LensPoint& other) const {
+LensError::Sag LensError::sag(const LensPoint& one, const LensPoint& other) const {
   // In a fixed order, so that rounding cannot make neighbours decide differently.
   const bool swapped = isBefore(other.p, one.p);
   const LensPoint& a = swapped ? other : one;
   const LensPoint& b = swapped ? one : other;
-  const glm::dvec2 from = pixel(a.n), to = pixel(b.n);
-  const glm::dvec2 chord = to - from;
-  const double length = glm::length(chord);
-  const auto distance = [&](const LensPoint& on) {
-    const glm::dvec2 d = pixel(on.n) - from;
-    if (length < 1e-9) return glm::length(d);
-    const double along = glm::dot(d, chord) / length;
-    const double across = std::abs(d.x * chord.y - d.y * chord.x) / length;
-    const double beyond = std::max({0.0, -along, along - length});
-    return std::hypot(across, beyond);
-  };
+  const glm::dvec2 from = pixel(a.n), chord = pixel(b.n) - from;
+  const double length = glm::length(chord), planeLength = glm::length(b.n - a.n);
+  Sag worst;
   const LensPoint middle = bisect(a, b);
-  const LensPoint before = bisect(a, middle), after = bisect(middle, b);
-  return std::max({distance(middle), distance(before), distance(after)});
+  for (const LensPoint& on : {middle, bisect(a, middle), bisect(middle, b)}) {
+    // Interpolation with w = z moves evenly on the undistorted plane.
+    const double share = planeLength > 0 ? glm::length(on.n - a.n) / planeLength : 0;
+    const glm::dvec2 d = pixel(on.n) - from;
+    if (length < 1e-9) {
+      worst.across = std::max(worst.across, glm::length(d));
+      continue;
+    }
+    worst.across = std::max(worst.across, std::abs(d.x * chord.y - d.y * chord.x) / length);
+    worst.along = std::max(worst.along, std::abs(glm::dot(d, chord) / length - share * length));
+  }
+  return worst;
 }
 
 }  // namespace alidade

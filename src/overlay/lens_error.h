@@ -36,17 +36,23 @@ class LensError {
   /// Pixel through the lens, domain unchecked.
   glm::dvec2 pixel(const glm::dvec2& n) const;
 
-  /// Largest distance in pixels from the exact curve between a and b to the chord between its ends,
-  /// from three points on it. The same for (a, b) and (b, a).
-  double sag(const LensPoint& a, const LensPoint& b) const;
+  /// How far the straight line that a device draws from a to b is from the exact curve, in pixels, the
+  /// largest of three places on it. The same for (a, b) and (b, a).
+  struct Sag {
+    double across = 0;  ///< from the curve to the line: what the eye sees of an edge
+    double along = 0;   ///< shift of a point on the line: what the depth of a face is off by
+  };
+  Sag sag(const LensPoint& a, const LensPoint& b) const;
 
-  /// An upper bound of sag() from the lens's curvature alone: costs nothing.
+  /// An upper bound of both from the lens's curvature alone: costs nothing.
   double sagBound(const LensPoint& a, const LensPoint& b) const {
     const glm::dvec2 d = b.n - a.n;
     return m_curvature * glm::dot(d, d);
   }
   bool needsSplit(const LensPoint& a, const LensPoint& b) const {
-    return sagBound(a, b) > m_allowedPx && sag(a, b) > m_allowedPx;
+    if (sagBound(a, b) <= m_allowedPx) return false;
+    const Sag s = sag(a, b);
+    return s.across > m_allowedPx || s.along > 2 * m_allowedPx;
   }
 
   /// True where the lens model holds: inside the fold-back radius and near enough to the picture.

@@ -240,7 +240,7 @@ void EdgeSplitter::split(const LensPoint& a, const LensPoint& b, int depth) {
     }
     return;
   }
-  if (m_lens.sagBound(a, b) > worstErrorPx) worstErrorPx = std::max(worstErrorPx, m_lens.sag(a, b));
+  if (m_lens.sagBound(a, b) > worstErrorPx) worstErrorPx = std::max(worstErrorPx, m_lens.sag(a, b).across);
   for (const LensPoint* end : {&a, &b})
     vertices.push_back({glm::vec3(end->p), m_element, static_cast<float>(glm::length(end->p - m_start))});
 }

@@ -146,8 +146,6 @@ Result<void> VulkanOverlayDevice::makePipelines() {
                         {Kind::Uint, offsetof(SurfaceVertex, element)}};
   surface.targets = {{GpuFormat::Rgba8}, {GpuFormat::R32Uint}, {GpuFormat::R32Float}};
   surface.depthTest = surface.depthWrite = true;
-  // Faces give way to the edges on them by what an edge is wide, however steep they stand.
-  surface.depthSlopeBias = -2.0f;
   surface.bindings = {Binding::Uniform, Binding::Storage};
   surface.constants = {0};
   GpuGraphicsDescription masked = surface;
@@ -157,8 +155,8 @@ Result<void> VulkanOverlayDevice::makePipelines() {
   edge.vertexShader = "design_edge.vert";
   edge.fragmentShader = "design_edge.frag";
   edge.targets = {{GpuFormat::Rg8, GpuBlend::Maximum}, {GpuFormat::R32Uint}, {GpuFormat::R32Float}};
-  edge.depthTest = true;
-  edge.bindings = {Binding::Uniform, Binding::Storage, Binding::Storage, Binding::SampledNearest};
+  edge.bindings = {Binding::Uniform, Binding::Storage, Binding::Storage, Binding::SampledNearest,
+                   Binding::SampledNearest};
 
   GpuGraphicsDescription composite;
   composite.vertexShader = "composite.vert";
@@ -247,7 +245,9 @@ Result<void> VulkanOverlayDevice::rebind() {
     return {};
   };
   if (auto ok = make(m_surfaceBindings, m_surface, {frame, styles}); !ok) return ok;
-  if (auto ok = make(m_edgeBindings, m_edge, {frame, styles, m_edgeVertices.buffer, m_scanDepth.image}); !ok) return ok;
+  if (auto ok = make(m_edgeBindings, m_edge, {frame, styles, m_edgeVertices.buffer, m_scanDepth.image, m_faceDepth.image});
+      !ok)
+    return ok;
   if (auto ok = make(m_compositeBindings, m_composite,
                      {frame, styles, m_image.image, m_scanDepth.image, m_points.image, m_faceColour.image,
                       m_faceElement.image, m_faceDepth.image, m_edgeCover.image, m_edgeElement.image,
@@ -278,8 +278,8 @@ void VulkanOverlayDevice::recordDesign(GpuCommands& commands, const DrawList& li
   }
   commands.endPass();
   const bool drawsEdges = list.display.designEdges && !list.edges.empty();
-  commands.beginPass({{m_edgeCover.cleared(), m_edgeElement.cleared(), m_edgeDepth.cleared(nothing)},
-                      GpuPassTarget{m_depthBuffer.image, {}}});
+  commands.toSampled(m_faceDepth.image);
+  commands.beginPass({{m_edgeCover.cleared(), m_edgeElement.cleared(), m_edgeDepth.cleared(nothing)}, {}});
   if (drawsEdges) {
     commands.bind(m_edge, m_edgeBindings);
     commands.bindIndices(m_edgeIndices.buffer);
@@ -289,8 +289,7 @@ void VulkanOverlayDevice::recordDesign(GpuCommands& commands, const DrawList& li
 }
 
 void VulkanOverlayDevice::recordComposite(GpuCommands& commands) {
-  for (const Target* target :
-       {&m_faceColour, &m_faceElement, &m_faceDepth, &m_edgeCover, &m_edgeElement, &m_edgeDepth})
+  for (const Target* target : {&m_faceColour, &m_faceElement, &m_edgeCover, &m_edgeElement, &m_edgeDepth})
     commands.toSampled(target->image);
   commands.beginPass({{m_colour.cleared(), m_element.cleared(), m_depth.cleared(), m_state.cleared()}, {}});
   commands.bind(m_composite, m_compositeBindings);
