@@ -2,18 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <filesystem>
-#include <memory>
 #include <set>
+#include <span>
 #include <vector>
 
 #include <QCryptographicHash>
 
-#include <sys/stat.h>
-
+#include "base/input_file.h"
 #include "io/project_paths.h"
 #include "io/project_store.h"
 
@@ -26,10 +22,6 @@ namespace {
 constexpr std::uint64_t kEndBytes = std::uint64_t(1) << 20;
 constexpr std::uint64_t kBlockBytes = std::uint64_t(1) << 16;
 constexpr std::uint64_t kBlocks = 64;
-
-struct FileCloser {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
 
 /// Offset and length of what is hashed: all of a file up to 6 MiB; else the first and the last MiB
 /// and 64 blocks, block i starting (i + 1) / 65 of the way from the first MiB's end to the last
@@ -50,30 +42,24 @@ std::vector<std::pair<std::uint64_t, std::uint64_t>> hashedParts(std::uint64_t s
 }  // namespace
 
 Result<SourceFile> describeSource(const std::string& path) {
-  struct stat status {};
   if (path.empty()) return fail("No file is named", {}, "Give a file");
-  if (::stat(path.c_str(), &status) != 0)
-    return fail(errno == ENOENT ? "The file does not exist" : std::string("The file cannot be reached: ") + std::strerror(errno),
-                path, "Check the path");
-  if (!S_ISREG(status.st_mode)) return fail("This is no ordinary file", path, "Choose a file");
-  const std::unique_ptr<std::FILE, FileCloser> file(std::fopen(path.c_str(), "rb"));
-  if (!file) return fail(std::string("The file cannot be opened: ") + std::strerror(errno), path, "Check its permissions");
+  const auto file = InputFile::open(path);
+  if (!file) return fail(file.error());
 
   SourceFile source;
   std::error_code error;
   const fs::path absolute = fs::absolute(path, error);
   source.path = error ? path : absolute.lexically_normal().string();
-  source.size = static_cast<std::uint64_t>(status.st_size);
+  source.size = file->size();
   QCryptographicHash hash(QCryptographicHash::Sha256);
   hash.addData(QByteArray::number(static_cast<qulonglong>(source.size)));
-  std::vector<char> buffer(static_cast<std::size_t>(std::min(source.size, kEndBytes)));
+  std::vector<std::byte> buffer(static_cast<std::size_t>(std::min(source.size, kEndBytes)));
   for (auto [offset, length] : hashedParts(source.size)) {
-    if (std::fseek(file.get(), static_cast<long>(offset), SEEK_SET) != 0) return fail("The file cannot be read", path, "Check the disk");
     while (length > 0) {
       const std::size_t part = static_cast<std::size_t>(std::min<std::uint64_t>(length, buffer.size()));
-      if (std::fread(buffer.data(), 1, part, file.get()) != part)
-        return fail("The file changed or became unreadable while it was read", path, "Try again when nothing writes to it");
+      if (auto read = file->readAt(offset, std::span(buffer).first(part)); !read) return fail(read.error());
       hash.addData(QByteArrayView(buffer.data(), static_cast<qsizetype>(part)));
+      offset += part;
       length -= part;
     }
   }

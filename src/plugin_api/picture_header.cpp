@@ -5,15 +5,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cstdint>
-#include <cstdio>
 #include <cstring>
-#include <memory>
 #include <optional>
 #include <vector>
 
-#include <sys/stat.h>
+#include "base/input_file.h"
 
 namespace alidade {
 
@@ -24,38 +21,9 @@ constexpr double kMaxPixelsPerByte = 10000.0;
 constexpr std::int64_t kAlwaysAllowedPixels = std::int64_t(4) << 20;
 constexpr std::int64_t kMaxPixels = std::int64_t(1) << 29;
 
-struct FileCloser {
-  void operator()(std::FILE* file) const { std::fclose(file); }
-};
-
-/// Random access to a file's bytes; every read is checked against its end.
-class ByteFile {
- public:
-  static Result<ByteFile> open(const std::string& path) {
-    struct stat status {};
-    if (::stat(path.c_str(), &status) != 0)
-      return fail(std::string("The picture cannot be read: ") + std::strerror(errno), path, "Check the path");
-    if (!S_ISREG(status.st_mode)) return fail("This is no picture file", path, "Choose a file");
-    ByteFile file;
-    file.m_file.reset(std::fopen(path.c_str(), "rb"));
-    if (!file.m_file)
-      return fail(std::string("The picture cannot be opened: ") + std::strerror(errno), path, "Check its permissions");
-    file.m_size = static_cast<std::uint64_t>(status.st_size);
-    return file;
-  }
-
-  std::uint64_t size() const { return m_size; }
-
-  bool read(std::uint64_t offset, std::span<unsigned char> bytes) const {
-    if (offset > m_size || bytes.size() > m_size - offset) return false;
-    if (std::fseek(m_file.get(), static_cast<long>(offset), SEEK_SET) != 0) return false;
-    return std::fread(bytes.data(), 1, bytes.size(), m_file.get()) == bytes.size();
-  }
-
- private:
-  std::unique_ptr<std::FILE, FileCloser> m_file;
-  std::uint64_t m_size = 0;
-};
+bool readInto(const InputFile& file, std::uint64_t offset, std::span<unsigned char> bytes) {
+  return file.readAt(offset, std::as_writable_bytes(bytes)).has_value();
+}
 
 std::uint64_t bigEndian(std::span<const unsigned char> bytes) {
   std::uint64_t value = 0;
@@ -71,16 +39,16 @@ std::uint64_t littleEndian(std::span<const unsigned char> bytes) {
 
 using Size = std::array<std::int64_t, 2>;
 
-std::optional<Size> pngSize(const ByteFile& file) {
+std::optional<Size> pngSize(const InputFile& file) {
   std::array<unsigned char, 16> b{};
-  if (!file.read(8, b) || std::memcmp(b.data() + 4, "IHDR", 4) != 0) return std::nullopt;
+  if (!readInto(file, 8, b) || std::memcmp(b.data() + 4, "IHDR", 4) != 0) return std::nullopt;
   const std::span<const unsigned char> all(b);
   return Size{std::int64_t(bigEndian(all.subspan(8, 4))), std::int64_t(bigEndian(all.subspan(12, 4)))};
 }
 
-std::optional<Size> bmpSize(const ByteFile& file) {
+std::optional<Size> bmpSize(const InputFile& file) {
   std::array<unsigned char, 12> b{};
-  if (!file.read(14, b)) return std::nullopt;
+  if (!readInto(file, 14, b)) return std::nullopt;
   const std::span<const unsigned char> all(b);
   if (littleEndian(all.first(4)) == 12)  // OS/2's header: 16-bit sizes
     return Size{std::int64_t(littleEndian(all.subspan(4, 2))), std::int64_t(littleEndian(all.subspan(6, 2)))};
@@ -88,9 +56,9 @@ std::optional<Size> bmpSize(const ByteFile& file) {
   return Size{static_cast<std::int32_t>(littleEndian(all.subspan(4, 4))), height < 0 ? -std::int64_t(height) : height};
 }
 
-std::optional<Size> webpSize(const ByteFile& file) {
+std::optional<Size> webpSize(const InputFile& file) {
   std::array<unsigned char, 18> b{};
-  if (!file.read(12, b)) return std::nullopt;
+  if (!readInto(file, 12, b)) return std::nullopt;
   const std::span<const unsigned char> all(b);
   if (std::memcmp(b.data(), "VP8X", 4) == 0)
     return Size{std::int64_t(littleEndian(all.subspan(12, 3))) + 1, std::int64_t(littleEndian(all.subspan(15, 3))) + 1};
@@ -103,22 +71,22 @@ std::optional<Size> webpSize(const ByteFile& file) {
 }
 
 /// First directory of a classic or big TIFF: tags 256 (width) and 257 (height).
-std::optional<Size> tiffSize(const ByteFile& file) {
+std::optional<Size> tiffSize(const InputFile& file) {
   std::array<unsigned char, 16> head{};
-  if (!file.read(0, std::span(head).first(8))) return std::nullopt;
+  if (!readInto(file, 0, std::span(head).first(8))) return std::nullopt;
   const bool little = head[0] == 'I';
   const auto number = [&](std::span<const unsigned char> bytes) { return little ? littleEndian(bytes) : bigEndian(bytes); };
   const std::span<const unsigned char> h(head);
   const bool big = number(h.subspan(2, 2)) == 43;
-  if (big && !file.read(0, head)) return std::nullopt;
+  if (big && !readInto(file, 0, head)) return std::nullopt;
   const std::uint64_t directory = big ? number(h.subspan(8, 8)) : number(h.subspan(4, 4));
   const std::size_t countBytes = big ? 8 : 2, entryBytes = big ? 20 : 12, valueAt = big ? 12 : 8;
   std::array<unsigned char, 20> entry{};
-  if (!file.read(directory, std::span(entry).first(countBytes))) return std::nullopt;
+  if (!readInto(file, directory, std::span(entry).first(countBytes))) return std::nullopt;
   const std::uint64_t count = std::min<std::uint64_t>(number(std::span(entry).first(countBytes)), 4096);
   Size size{0, 0};
   for (std::uint64_t i = 0; i < count; ++i) {
-    if (!file.read(directory + countBytes + i * entryBytes, std::span(entry).first(entryBytes))) return std::nullopt;
+    if (!readInto(file, directory + countBytes + i * entryBytes, std::span(entry).first(entryBytes))) return std::nullopt;
     const std::span<const unsigned char> e(entry);
     const std::uint64_t tag = number(e.first(2)), type = number(e.subspan(2, 2));
     if (tag != 256 && tag != 257) continue;
@@ -130,9 +98,9 @@ std::optional<Size> tiffSize(const ByteFile& file) {
 /// Walks the segments of a JPEG (ITU-T T.81, annex B) and calls `visit(marker, offset, length)` with
 /// the payload of each; stops where it returns false or at the first entropy-coded data.
 template <class Visit>
-std::optional<std::uint64_t> walkJpegSegments(const ByteFile& file, std::uint64_t at, Visit&& visit) {
+std::optional<std::uint64_t> walkJpegSegments(const InputFile& file, std::uint64_t at, Visit&& visit) {
   std::array<unsigned char, 4> b{};
-  while (file.read(at, std::span(b).first(2))) {
+  while (readInto(file, at, std::span(b).first(2))) {
     if (b[0] != 0xff) return std::nullopt;
     if (b[1] == 0xff) {  // fill byte
       ++at;
@@ -144,7 +112,7 @@ std::optional<std::uint64_t> walkJpegSegments(const ByteFile& file, std::uint64_
       at += 2;
       continue;
     }
-    if (!file.read(at, b)) return std::nullopt;
+    if (!readInto(file, at, b)) return std::nullopt;
     const std::uint64_t length = bigEndian(std::span(b).subspan(2, 2));
     if (length < 2) return std::nullopt;
     if (!visit(marker, at + 4, length - 2)) return at + 2 + length;
@@ -154,13 +122,13 @@ std::optional<std::uint64_t> walkJpegSegments(const ByteFile& file, std::uint64_
   return std::nullopt;
 }
 
-std::optional<Size> jpegSize(const ByteFile& file) {
+std::optional<Size> jpegSize(const InputFile& file) {
   std::optional<Size> size;
   walkJpegSegments(file, 2, [&](unsigned marker, std::uint64_t offset, std::uint64_t length) {
     const bool startOfFrame = marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
     if (!startOfFrame) return true;
     std::array<unsigned char, 5> b{};
-    if (length >= 5 && file.read(offset, b))
+    if (length >= 5 && readInto(file, offset, b))
       size = Size{std::int64_t(bigEndian(std::span(b).subspan(3, 2))), std::int64_t(bigEndian(std::span(b).subspan(1, 2)))};
     return false;
   });
@@ -168,11 +136,11 @@ std::optional<Size> jpegSize(const ByteFile& file) {
 }
 
 /// From entropy-coded data at `at` to the next true marker; nothing where the file ends first.
-std::optional<std::uint64_t> endOfEntropyData(const ByteFile& file, std::uint64_t at) {
+std::optional<std::uint64_t> endOfEntropyData(const InputFile& file, std::uint64_t at) {
   std::vector<unsigned char> block(std::size_t(1) << 18);
   while (at + 1 < file.size()) {
     const std::size_t count = static_cast<std::size_t>(std::min<std::uint64_t>(block.size(), file.size() - at));
-    if (!file.read(at, std::span(block).first(count))) return std::nullopt;
+    if (!readInto(file, at, std::span(block).first(count))) return std::nullopt;
     std::size_t i = 0;
     while (i + 1 < count) {
       const auto* hit = static_cast<const unsigned char*>(std::memchr(block.data() + i, 0xff, count - 1 - i));
@@ -187,7 +155,7 @@ std::optional<std::uint64_t> endOfEntropyData(const ByteFile& file, std::uint64_
   return std::nullopt;
 }
 
-bool jpegReachesItsEnd(const ByteFile& file) {
+bool jpegReachesItsEnd(const InputFile& file) {
   bool ended = false;
   std::optional<std::uint64_t> at = 2;
   while (at && !ended) {
@@ -233,12 +201,12 @@ bool isPictureExtension(std::string_view extension) {
 }
 
 Result<PictureHeader> readPictureHeader(const std::string& path) {
-  const auto file = ByteFile::open(path);
+  const auto file = InputFile::open(path);
   if (!file) return fail(file.error());
   if (file->size() == 0) return fail("The picture file is empty", path, "Copy the file again");
   std::array<unsigned char, 12> head{};
   const auto headBytes = static_cast<std::size_t>(std::min<std::uint64_t>(head.size(), file->size()));
-  if (!file->read(0, std::span(head).first(headBytes))) return fail("The picture cannot be read", path, "Check the disk");
+  if (!readInto(*file, 0, std::span(head).first(headBytes))) return fail("The picture cannot be read", path, "Check the disk");
 
   PictureHeader header;
   header.format = pictureFormatOf(std::as_bytes(std::span(head)).first(headBytes));
@@ -269,7 +237,7 @@ Result<PictureHeader> readPictureHeader(const std::string& path) {
 
 Result<void> checkPictureComplete(const std::string& path, const PictureHeader& header) {
   if (header.format != PictureFormat::Jpeg) return {};
-  const auto file = ByteFile::open(path);
+  const auto file = InputFile::open(path);
   if (!file) return fail(file.error());
   if (!jpegReachesItsEnd(*file))
     return fail("The JPEG is cut off or damaged: its end marker is missing", path, "Copy the file again");
