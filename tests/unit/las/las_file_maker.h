@@ -105,9 +105,18 @@ struct LasFileMaker {
     return payload;
   }
 
+  /// Writes into a folder that goes with the process.
   std::string write(const std::string& name) const {
-    const auto path = std::filesystem::temp_directory_path() / ("alidade_las_" + std::to_string(::getpid()) + name);
-    std::ofstream(path, std::ios::binary).write(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    struct Folder {
+      std::filesystem::path path =
+          std::filesystem::temp_directory_path() / ("alidade_las_" + std::to_string(::getpid()));
+      Folder() { std::filesystem::create_directories(path); }
+      ~Folder() { std::filesystem::remove_all(path); }
+    };
+    static const Folder folder;
+    const auto path = folder.path / name;
+    std::ofstream(path, std::ios::binary)
+        .write(reinterpret_cast<const char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
     return path.string();
   }
 };
