@@ -87,19 +87,21 @@ void FrameRenderer::traceCentres(const RigidTransform& siteFromCamera, Image<Sam
 
 Image<std::uint8_t> FrameRenderer::findEdges(const Image<Sample>& samples) const {
   Image<std::uint8_t> edges(samples.width(), samples.height(), 0);
-  const auto differ = [](const Sample& a, const Sample& b) {
-    if (a.object != b.object || a.sunlit != b.sunlit) return true;
-    if (a.object == kSkyObject) return false;
-    if (glm::dot(a.normal, b.normal) < 0.9f || std::abs(a.depth - b.depth) > 0.06 * a.depth) return true;
+  const auto extraSamples = [](const Sample& a, const Sample& b) -> std::uint8_t {
+    if (a.object != b.object || a.sunlit != b.sunlit) return 4;
+    if (a.object == kSkyObject) return 0;
+    if (glm::dot(a.normal, b.normal) < 0.9f || std::abs(a.depth - b.depth) > 0.06 * a.depth) return 4;
     const glm::vec3 d = glm::abs(glm::sqrt(a.radiance) - glm::sqrt(b.radiance));
-    return d.x + d.y + d.z > 0.25f;
+    return d.x + d.y + d.z > 0.30f ? 2 : 0;
+  };
+  const auto compare = [&](int x, int y, int otherX, int otherY) {
+    const std::uint8_t extra = extraSamples(samples.at(x, y), samples.at(otherX, otherY));
+    for (std::uint8_t* edge : {&edges.at(x, y), &edges.at(otherX, otherY)}) *edge = std::max(*edge, extra);
   };
   for (int y = 0; y < samples.height(); ++y)
     for (int x = 0; x < samples.width(); ++x) {
-      if (x + 1 < samples.width() && differ(samples.at(x, y), samples.at(x + 1, y)))
-        edges.at(x, y) = edges.at(x + 1, y) = 1;
-      if (y + 1 < samples.height() && differ(samples.at(x, y), samples.at(x, y + 1)))
-        edges.at(x, y) = edges.at(x, y + 1) = 1;
+      if (x + 1 < samples.width()) compare(x, y, x + 1, y);
+      if (y + 1 < samples.height()) compare(x, y, x, y + 1);
     }
   return edges;
 }
@@ -147,17 +149,17 @@ ColourImage FrameRenderer::render(const RigidTransform& cameraFromSite, int fram
   const glm::dmat3 rotation = siteFromCamera.rotationMatrix();
   ColourImage picture(width, height);
   parallelFor(static_cast<std::size_t>(height), 4, [&](std::size_t first, std::size_t last, int) {
-    static constexpr double offsets[4][2] = {{-0.125, -0.375}, {0.375, -0.125}, {-0.375, 0.125}, {0.125, 0.375}};
+    // The first two lie across from each other, so that two of them are even as well.
+    static constexpr double offsets[4][2] = {{-0.375, -0.125}, {0.375, 0.125}, {0.125, -0.375}, {-0.125, 0.375}};
     for (auto y = static_cast<int>(first); y < static_cast<int>(last); ++y)
       for (int x = 0; x < width; ++x) {
         glm::vec3 radiance = samples.at(x, y).radiance;
-        if (edges.at(x, y)) {
-          radiance = glm::vec3(0.0f);
-          for (const auto& o : offsets) {
-            const glm::dvec3 direction = directionAt(x + o[0], y + o[1]);
-            radiance += 0.25f * trace(siteFromCamera.translation, rotation, direction).radiance;
-          }
+        const int extra = edges.at(x, y);
+        for (int i = 0; i < extra; ++i) {
+          const glm::dvec3 direction = directionAt(x + offsets[i][0], y + offsets[i][1]);
+          radiance += trace(siteFromCamera.translation, rotation, direction).radiance;
         }
+        radiance /= static_cast<float>(1 + extra);
         picture.at(x, y) = develop(radiance, x, y, frame);
       }
   });

@@ -38,6 +38,7 @@ class FrameRenderer {
 
   Sample trace(const glm::dvec3& origin, const glm::dmat3& siteFromCamera, const glm::dvec3& direction) const;
   void traceCentres(const RigidTransform& siteFromCamera, Image<Sample>& samples, FrameTruth& truth) const;
+  /// How many more rays each pixel wants: 4 on edges of things and shadows, 2 on strong texture.
   Image<std::uint8_t> findEdges(const Image<Sample>& samples) const;
   Rgba8 develop(const glm::vec3& radiance, int x, int y, int frame) const;
   /// Direction (x, y, 1) that a place of the picture sees, between its neighbours' centres.
