@@ -131,6 +131,25 @@ std::optional<Matrix6> PoseProblem::covariance(const Matrix6& normal) const {
   return covariance;
 }
 
+Vector6 PoseProblem::gradient(const PoseState& state, const std::vector<int>& chosen) const {
+  Vector6 sum = Vector6::Zero(), masked = Vector6::Zero();
+  for (const int i : chosen) {
+    const auto at = linearise(state, i);
+    if (!at) continue;
+    const double weight = 1 / (m_observations[i].sigmaPx * m_observations[i].sigmaPx);
+    sum += weight * at->jacobian.transpose() * Eigen::Vector2d(at->residualPx.x, at->residualPx.y);
+  }
+  for (const int r : m_free) masked[r] = sum[r];
+  return masked;
+}
+
+double PoseProblem::decrement(const PoseState& state, const std::vector<int>& chosen) const {
+  const auto inverse = covariance(normalMatrix(state, chosen));
+  if (!inverse) return std::numeric_limits<double>::infinity();
+  const Vector6 g = gradient(state, chosen);
+  return std::sqrt(std::max(0.0, g.dot(*inverse * g)));
+}
+
 PoseState PoseProblem::moved(const PoseState& state, const Vector6& step) const {
   PoseState to;
   to.centre = state.centre + glm::dvec3(step[0], step[1], step[2]);
@@ -141,19 +160,12 @@ PoseState PoseProblem::moved(const PoseState& state, const Vector6& step) const 
 PoseState PoseProblem::descend(PoseState state, const std::vector<int>& chosen, int iterations) const {
   double damping = 1e-6, error = cost(state, chosen);
   for (int i = 0; i < iterations && std::isfinite(error); ++i) {
-    Matrix6 normal = Matrix6::Zero();
-    Vector6 gradient = Vector6::Zero();
-    for (const int o : chosen) {
-      const auto at = linearise(state, o);
-      if (!at) return state;
-      const double weight = 1 / (m_observations[o].sigmaPx * m_observations[o].sigmaPx);
-      normal += weight * at->jacobian.transpose() * at->jacobian;
-      gradient += weight * at->jacobian.transpose() * Eigen::Vector2d(at->residualPx.x, at->residualPx.y);
-    }
+    const Matrix6 normal = normalMatrix(state, chosen);
+    const Vector6 slope = gradient(state, chosen);
     Matrix6 damped = Matrix6::Identity();
     Vector6 right = Vector6::Zero();
     for (const int r : m_free) {
-      right[r] = -gradient[r];
+      right[r] = -slope[r];
       for (const int c : m_free) damped(r, c) = normal(r, c);
       damped(r, r) = normal(r, r) * (1 + damping) + 1e-30;
     }

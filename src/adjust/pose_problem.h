@@ -67,12 +67,17 @@ class PoseProblem {
   /// Inverse over the free parameters, zero elsewhere; nothing where it is singular.
   std::optional<Matrix6> covariance(const Matrix6& normal) const;
 
+  /// Length of the Gauss-Newton step from here in standard deviations, sqrt(gᵀ N⁻¹ g): zero at a minimum,
+  /// infinite where the normal equations are singular.
+  double decrement(const PoseState& state, const std::vector<int>& chosen) const;
+
   /// Levenberg-Marquardt on few observations, quick and without allocation of a solver; for
   /// hypotheses. Returns where it stood last.
   PoseState descend(PoseState state, const std::vector<int>& chosen, int iterations) const;
 
  private:
   PoseState moved(const PoseState& state, const Vector6& step) const;
+  Vector6 gradient(const PoseState& state, const std::vector<int>& chosen) const;
 
   const Camera& m_camera;
   const std::vector<ResectionObservation>& m_observations;

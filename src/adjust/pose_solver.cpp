@@ -51,9 +51,11 @@ PoseSolution solveUnguarded(const PoseProblem& problem, const PoseState& start, 
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::DENSE_QR;
   options.max_num_iterations = maximumIterations;
-  options.function_tolerance = 1e-14;
-  options.gradient_tolerance = 1e-14;
-  options.parameter_tolerance = 1e-13;
+  // Tighter, and rounding makes the last steps look invalid.
+  options.function_tolerance = 1e-11;
+  options.gradient_tolerance = 1e-12;
+  options.parameter_tolerance = 1e-11;
+  options.max_num_consecutive_invalid_steps = 20;
   options.logging_type = ceres::SILENT;
   options.num_threads = 1;
   ceres::Solver::Summary summary;
@@ -62,9 +64,15 @@ PoseSolution solveUnguarded(const PoseProblem& problem, const PoseState& start, 
   PoseSolution solution;
   solution.state.centre = {centre[0], centre[1], centre[2]};
   solution.state.rotation = glm::normalize(glm::dquat(rotation[0], rotation[1], rotation[2], rotation[3]));
-  solution.converged = summary.termination_type == ceres::CONVERGENCE;
   solution.iterations = summary.num_successful_steps + summary.num_unsuccessful_steps;
   solution.message = summary.message;
+  if (huberSigmas > 0) {
+    solution.converged = summary.termination_type == ceres::CONVERGENCE;
+  } else if (summary.termination_type != ceres::FAILURE) {
+    // Newton's last digits, then the honest question: how far, in standard deviations, is the next step?
+    solution.state = problem.descend(solution.state, chosen, 4);
+    solution.converged = summary.termination_type == ceres::CONVERGENCE && problem.decrement(solution.state, chosen) < 1e-4;
+  }
   return solution;
 }
 

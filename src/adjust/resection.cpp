@@ -38,6 +38,12 @@ double standardised(const PoseProblem& problem, const PoseState& state, const Ma
   return std::sqrt(sum);
 }
 
+/// Among n right picks the worst one lies beyond this in one set of a thousand: sqrt(2 ln(n / 0.001)), as
+/// P(|r| > k sigma) = exp(-k²/2). Below it, dropping a pick costs more than it saves.
+double chanceLimit(std::size_t n) {
+  return std::sqrt(2 * std::log(1000.0 * static_cast<double>(n)));
+}
+
 struct Adjusted {
   PoseSolution solution;
   std::vector<int> inliers;
@@ -203,8 +209,8 @@ Result<ResectionSummary> resect(const Camera& camera, const RigidTransform& star
                                         "numbers and the start pose", agreeing, problem.size()));
   if (const auto why = refusalOfTwoPoses(problem, consensus.state, consensus.inliers, consensus.scale))
     return refused(summary, *why);
-  const Adjusted done = adjust(problem, consensus.state, consensus.inliers, usable,
-                               options.outlierSigmas * consensus.scale, options);
+  const double limit = std::max(options.outlierSigmas, chanceLimit(usable.size())) * consensus.scale;
+  const Adjusted done = adjust(problem, consensus.state, consensus.inliers, usable, limit, options);
   summary.iterations += done.iterations;
   if (!done.solution.converged)
     return refused(summary, fmt::format("The solution did not settle within {} iterations ({}); give a better start pose",

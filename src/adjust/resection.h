@@ -27,7 +27,9 @@ struct ResectionOptions {
   std::array<bool, 3> lockPosition{false, false, false};  ///< E, N, H of the camera's centre
   bool lockAttitude = false;
   double huberSigmas = 2.5;   ///< robust loss: observations beyond this many sigmas lose weight; 0: none
-  double outlierSigmas = 3.5; ///< reported as outlier beyond this
+  /// A standardised residual beyond this is an outlier and takes no part, once it is also beyond what
+  /// chance gives the worst of so many right picks in one set of a thousand (20 picks: 4.5).
+  double outlierSigmas = 3.5;
   int maximumIterations = 100;
   std::vector<glm::dvec3> at; ///< object points where the expected error is wanted, world
 
@@ -38,7 +40,7 @@ struct ResectionResidual {
   std::string name;
   glm::dvec2 residualPx{0};  ///< projected - observed
   double sigmas = 0;         ///< |residual| / sigma
-  bool outlier = false;
+  bool outlier = false;      ///< took no part in the adjustment
 };
 
 /// Uncertainty of the overlay at an object point, from the pose's covariance.
