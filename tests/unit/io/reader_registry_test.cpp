@@ -1,0 +1,106 @@
+// SPDX-FileCopyrightText: 2026 the Alidade authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "io/reader_registry.h"
+
+#include <algorithm>
+#include <filesystem>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "unit/io/test_folder.h"
+
+namespace alidade {
+
+namespace {
+
+class FakeReader : public PointListReader {
+ public:
+  FakeReader(std::string id, int score) : m_id(std::move(id)), m_score(score) {}
+  ReaderDescription description() const override { return {m_id, m_id + " format", {"fake"}}; }
+  int sniff(const FileProbe& probe) const override { return probe.startsWith("FAKE") ? m_score : 0; }
+  Result<PointList> read(const std::string&) const override { return PointList(); }
+
+ private:
+  std::string m_id;
+  int m_score;
+};
+
+}  // namespace
+
+TEST(ReaderRegistry, LoadsThePluginsBesideTheProgram) {
+  const auto& readers = ReaderRegistry::instance().readers();
+  for (const std::string id : {"colmap", "pictures", "video"})
+    EXPECT_TRUE(std::any_of(readers.begin(), readers.end(), [&](const auto& r) { return r->description().id == id; })) << id;
+  EXPECT_TRUE(ReaderRegistry::instance().loadErrors().empty());
+}
+
+TEST(ReaderRegistry, TheHighestClaimWins) {
+  const TestFolder folder;
+  const std::string path = folder.write("a.fake", "FAKE data");
+  ReaderRegistry registry;
+  registry.add(std::make_unique<FakeReader>("low", 20));
+  registry.add(std::make_unique<FakeReader>("high", 60));
+  registry.add(std::make_unique<FakeReader>("middle", 40));
+  EXPECT_EQ((*registry.find(path))->description().id, "high");
+  EXPECT_EQ((*registry.findAs<PointListReader>(path))->description().id, "high");
+}
+
+TEST(ReaderRegistry, SaysWhatTheFileIsInstead) {
+  const TestFolder folder;
+  const std::string path = folder.write("a.fake", "FAKE data");
+  ReaderRegistry registry;
+  registry.add(std::make_unique<FakeReader>("points", 60));
+  const auto found = registry.findAs<ScanReader>(path);
+  ASSERT_FALSE(found);
+  EXPECT_EQ(found.error().what, "This is a list of points (points format), not a scan");
+}
+
+TEST(ReaderRegistry, SaysWhatIsRead) {
+  const TestFolder folder;
+  ReaderRegistry registry;
+  registry.add(std::make_unique<FakeReader>("points", 60));
+  const auto found = registry.find(folder.write("b.doc", "something else"));
+  ASSERT_FALSE(found);
+  EXPECT_THAT(found.error().advice, testing::HasSubstr("points format (fake)"));
+}
+
+TEST(ReaderRegistry, RefusesMissingAndEmptyFilesAndDevices) {
+  const TestFolder folder;
+  const ReaderRegistry registry;
+  EXPECT_EQ(registry.find(folder / "none").error().what, "The file does not exist");
+  EXPECT_EQ(registry.find(folder.write("e.las", "")).error().what, "The file is empty");
+  std::filesystem::create_directories(folder / "empty");
+  EXPECT_EQ(registry.find(folder / "empty").error().what, "The folder is empty");
+  EXPECT_FALSE(registry.find("/dev/zero"));
+  EXPECT_FALSE(registry.find(""));
+}
+
+TEST(ReaderRegistry, ABrokenPluginIsALoadErrorAndTheOthersGoOn) {
+  const TestFolder folder;
+  folder.write("a_broken.so", "not an ELF file");
+  folder.write("readme.txt", "no library");
+  ReaderRegistry registry;
+  registry.loadFolder(folder.path().string());
+  ASSERT_EQ(registry.loadErrors().size(), 1u);
+  EXPECT_THAT(registry.loadErrors().front().where, testing::HasSubstr("a_broken.so"));
+  std::filesystem::copy_file(std::string(ALIDADE_BINARY_DIR) + "/lib/alidade/plugins/colmap.so", folder / "b_colmap.so");
+  registry.loadFolder(folder.path().string());
+  EXPECT_EQ(registry.readers().size(), 1u);
+}
+
+TEST(ReaderRegistry, AFolderThatIsNotThereIsNoError) {
+  ReaderRegistry registry;
+  registry.loadFolder("/nowhere/at/all");
+  EXPECT_TRUE(registry.loadErrors().empty());
+}
+
+TEST(ReaderRegistry, KeepsOneReaderOfAName) {
+  ReaderRegistry registry;
+  registry.add(std::make_unique<FakeReader>("same", 10));
+  registry.add(std::make_unique<FakeReader>("same", 20));
+  EXPECT_EQ(registry.readers().size(), 1u);
+}
+
+}  // namespace alidade
