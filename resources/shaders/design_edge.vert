@@ -37,6 +37,8 @@ void main() {
   float reach = frame.lines.y + 0.5;
   outSideways = vec2(-towards.y, towards.x);
   gl_Position = clipPosition((end == 0u ? pixelA : pixelB) + side * reach * outSideways, p.z);
+  // The depth test only spares the work for what is well behind; isBehindFaces() in the fragment is exact.
+  gl_Position.z *= 1.06;
   outAcross = side * reach;
   outAlong = uintBitsToFloat(words[5u * vertex + 4u]);
   outDepth = p.z;

@@ -78,7 +78,9 @@ VkRenderingAttachmentInfo attachmentOf(const GpuPassTarget& target, VkImageLayou
   auto info = stamped<VkRenderingAttachmentInfo>(VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO);
   info.imageView = image.view.get();
   info.imageLayout = layout;
-  info.loadOp = target.clear ? VK_ATTACHMENT_LOAD_OP_CLEAR : VK_ATTACHMENT_LOAD_OP_LOAD;
+  info.loadOp = target.clear           ? VK_ATTACHMENT_LOAD_OP_CLEAR
+                : target.isOverwritten ? VK_ATTACHMENT_LOAD_OP_DONT_CARE
+                                       : VK_ATTACHMENT_LOAD_OP_LOAD;
   info.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
   if (!target.clear) return info;
   const auto& clear = *target.clear;
@@ -114,7 +116,7 @@ void GpuCommands::beginPass(const GpuPass& pass) {
   std::vector<VkRenderingAttachmentInfo> colours;
   VkExtent2D extent{0, 0};
   const auto enter = [&](const GpuPassTarget& target, const ImageUse& use) {
-    moveImage(m_state.commands, target.image.state(), use, target.clear.has_value());
+    moveImage(m_state.commands, target.image.state(), use, target.clear.has_value() || target.isOverwritten);
     extent = {static_cast<std::uint32_t>(target.image.width()), static_cast<std::uint32_t>(target.image.height())};
     return attachmentOf(target, use.layout);
   };

@@ -12,10 +12,12 @@
 
 namespace alidade {
 
-/// A target of a pass: cleared to `clear` where given, else its content is kept.
+/// A target of a pass: cleared to `clear` where given, else its content is kept, or left undefined
+/// where the pass writes every pixel itself.
 struct GpuPassTarget {
   GpuImage image;
   std::optional<std::array<float, 4>> clear;  ///< whole numbers for unsigned formats; [0] for depth
+  bool isOverwritten = false;
 };
 
 struct GpuPass {

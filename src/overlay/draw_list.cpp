@@ -90,6 +90,8 @@ Piece workOn(const Job& job, const DesignModel& model, const std::vector<glm::dv
   const auto isUsable = [&](std::uint32_t vertex) { return vertex < inCamera.size() && isFinite(inCamera[vertex]); };
   if (job.isSurface) {
     SurfaceSplitter splitter(lens, budget);
+    splitter.vertices.reserve(2 * job.count);
+    splitter.indices.reserve(3 * job.count);
     for (std::size_t i = 0; i < job.count; ++i) {
       const std::uint32_t* corner = model.triangles.data() + job.first + 3 * i;
       if (!isUsable(corner[0]) || !isUsable(corner[1]) || !isUsable(corner[2])) continue;
@@ -99,6 +101,7 @@ Piece workOn(const Job& job, const DesignModel& model, const std::vector<glm::dv
     piece.indices = std::move(splitter.indices);
   } else {
     EdgeSplitter splitter(lens, budget);
+    splitter.vertices.reserve(2 * job.count);
     for (std::size_t i = 0; i < job.count; ++i) {
       const auto& edge = model.edges[job.first + i];
       if (!isUsable(edge[0]) || !isUsable(edge[1])) continue;

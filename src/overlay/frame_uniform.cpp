@@ -37,7 +37,7 @@ FrameUniform frameUniform(const DrawList& list) {
                flag(hasImage && list.image->width() == list.width && list.image->height() == list.height)};
   u.scan = {flag(list.scanDepth != nullptr), d.depthToleranceM, static_cast<float>(d.hidden),
             flag(list.pointColour != nullptr)};
-  u.lines = {scale * kEdgeHalfWidthPx, scale * kCasingHalfWidthPx, scale, flag(d.designEdges && d.designPass)};
+  u.lines = {scale * kEdgeHalfWidthPx, scale * kCasingHalfWidthPx, scale, flag(drawsEdges(list))};
   u.view = {LensError::kNearM, flag(d.designFaces), kEdgeSlack, list.camera.intrinsics().fx};
   return u;
 }

@@ -42,6 +42,11 @@ static_assert(sizeof(EdgeVertex) == 20 && offsetof(EdgeVertex, element) == 12 &&
 /// Lines and patterns keep their size on a 1080-line picture and grow with larger ones.
 double drawingScale(int width, int height);
 
+/// Whether the edge pass runs at all.
+inline bool drawsEdges(const DrawList& list) {
+  return list.display.designEdges && list.display.designPass && !list.edges.empty();
+}
+
 FrameUniform frameUniform(const DrawList& list);
 
 }  // namespace alidade

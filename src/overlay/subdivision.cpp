@@ -194,10 +194,19 @@ void SurfaceSplitter::clipToLens(const std::array<LensPoint, 3>& corners, int de
   }
 }
 
+/// Takes a corner over from the last pieces where it is the same, as in the two triangles of a rectangle.
 void SurfaceSplitter::emit(const LensPoint& a, const LensPoint& b, const LensPoint& c) {
+  constexpr std::size_t remembered = 4;
   for (const LensPoint* corner : {&a, &b, &c}) {
-    indices.push_back(static_cast<std::uint32_t>(vertices.size()));
-    vertices.push_back({glm::vec3(corner->p), m_normal, m_element});
+    const glm::vec3 p(corner->p);
+    std::size_t found = vertices.size();
+    for (std::size_t back = 1; back <= std::min(remembered, vertices.size()); ++back) {
+      const SurfaceVertex& v = vertices[vertices.size() - back];
+      if (v.pInCamera == p && v.element == m_element && glm::dot(v.normal, m_normal) > 0.999999f)
+        found = vertices.size() - back;
+    }
+    indices.push_back(static_cast<std::uint32_t>(found));
+    if (found == vertices.size()) vertices.push_back({p, m_normal, m_element});
   }
 }
 

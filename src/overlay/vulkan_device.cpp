@@ -83,7 +83,11 @@ struct Target {
     result = std::move(*buffer);
     return {};
   }
-  GpuPassTarget cleared(float value = 0) const { return {image, std::array<float, 4>{value, value, value, value}}; }
+  GpuPassTarget cleared(float value = 0) const {
+    return {image, std::array<float, 4>{value, value, value, value}, false};
+  }
+  GpuPassTarget overwritten() const { return {image, {}, true}; }
+  GpuPassTarget kept() const { return {image, {}, false}; }
 };
 
 /// Draws faces and edges into pictures of the design alone, then composes them with the camera image,
@@ -155,6 +159,7 @@ Result<void> VulkanOverlayDevice::makePipelines() {
   edge.vertexShader = "design_edge.vert";
   edge.fragmentShader = "design_edge.frag";
   edge.targets = {{GpuFormat::Rg8, GpuBlend::Maximum}, {GpuFormat::R32Uint}, {GpuFormat::R32Float}};
+  edge.depthTest = true;  // coarse, so that what stands far behind costs nothing; the shader decides
   edge.bindings = {Binding::Uniform, Binding::Storage, Binding::Storage, Binding::SampledNearest,
                    Binding::SampledNearest};
 
@@ -277,21 +282,22 @@ void VulkanOverlayDevice::recordDesign(GpuCommands& commands, const DrawList& li
     commands.drawIndexed(static_cast<std::uint32_t>(list.triangles.size()));
   }
   commands.endPass();
-  const bool drawsEdges = list.display.designEdges && !list.edges.empty();
   commands.toSampled(m_faceDepth.image);
-  commands.beginPass({{m_edgeCover.cleared(), m_edgeElement.cleared(), m_edgeDepth.cleared(nothing)}, {}});
-  if (drawsEdges) {
-    commands.bind(m_edge, m_edgeBindings);
-    commands.bindIndices(m_edgeIndices.buffer);
-    commands.drawIndexed(static_cast<std::uint32_t>(list.edges.size() * 3));
-  }
+  // Without edges the composition does not look at these.
+  if (!drawsEdges(list)) return;
+  commands.beginPass({{m_edgeCover.cleared(), m_edgeElement.overwritten(), m_edgeDepth.overwritten()},
+                      m_depthBuffer.kept()});
+  commands.bind(m_edge, m_edgeBindings);
+  commands.bindIndices(m_edgeIndices.buffer);
+  commands.drawIndexed(static_cast<std::uint32_t>(list.edges.size() * 3));
   commands.endPass();
 }
 
 void VulkanOverlayDevice::recordComposite(GpuCommands& commands) {
   for (const Target* target : {&m_faceColour, &m_faceElement, &m_edgeCover, &m_edgeElement, &m_edgeDepth})
     commands.toSampled(target->image);
-  commands.beginPass({{m_colour.cleared(), m_element.cleared(), m_depth.cleared(), m_state.cleared()}, {}});
+  commands.beginPass(
+      {{m_colour.overwritten(), m_element.overwritten(), m_depth.overwritten(), m_state.overwritten()}, {}});
   commands.bind(m_composite, m_compositeBindings);
   commands.draw(3);
   commands.endPass();
