@@ -67,7 +67,8 @@ std::vector<RigidTransform> walkPast(int frames, std::uint32_t seed) {
                          -0.40 + 0.5 * (ground + 0.40) + 1.66 + step + 0.008 * swayZ.at(seconds));
     const glm::dvec3 target(0.38 * x + 0.5 + 0.10 * yaw.at(seconds), 0.0, 1.35 + 0.08 * pitch.at(seconds));
     RigidTransform pose = RigidTransform::cameraLookingAt(eye, target);
-    const glm::dquat tilt = glm::angleAxis(radiansFromDegrees(0.9 * roll.at(seconds) + 0.4), glm::dvec3(0, 0, 1));
+    const glm::dquat tilt =
+        glm::angleAxis(radiansFromDegrees(0.9 * roll.at(seconds) + 0.4), glm::dvec3(0, 0, 1));
     pose.rotation = glm::normalize(tilt * pose.rotation);
     pose.translation = -(pose.rotation * eye);
     poses.push_back(pose);
@@ -75,7 +76,8 @@ std::vector<RigidTransform> walkPast(int frames, std::uint32_t seed) {
   return poses;
 }
 
-std::vector<RigidTransform> perturbed(const std::vector<RigidTransform>& cameraFromWorld, std::uint32_t seed) {
+std::vector<RigidTransform> perturbed(const std::vector<RigidTransform>& cameraFromWorld,
+                                      std::uint32_t seed) {
   const Wander x(seed, 411, 0.13), y(seed, 412, 0.13), z(seed, 413, 0.13);
   const Wander rx(seed, 414, 0.11), ry(seed, 415, 0.11), rz(seed, 416, 0.11);
   std::vector<RigidTransform> poses;
@@ -83,7 +85,8 @@ std::vector<RigidTransform> perturbed(const std::vector<RigidTransform>& cameraF
     const double seconds = static_cast<double>(i) / kFramesPerSecond;
     const glm::dvec3 centre =
         cameraFromWorld[i].centre() + 0.018 * glm::dvec3(x.at(seconds), y.at(seconds), z.at(seconds));
-    const glm::dvec3 turn = radiansFromDegrees(0.2) * glm::dvec3(rx.at(seconds), ry.at(seconds), rz.at(seconds));
+    const glm::dvec3 turn =
+        radiansFromDegrees(0.2) * glm::dvec3(rx.at(seconds), ry.at(seconds), rz.at(seconds));
     const double angle = glm::length(turn);
     const glm::dquat off = angle > 0 ? glm::angleAxis(angle, turn / angle) : glm::dquat(1, 0, 0, 0);
     RigidTransform pose;

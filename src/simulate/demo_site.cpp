@@ -66,7 +66,8 @@ class DemoWriter {
     m_demo.frameCount = m_options.frames;
     if (auto written = writeStations(m_demo.stations, *scan); !written) return fail(written.error());
     if (m_options.truth)
-      if (auto written = writeTruth(m_demo.truth + "/truth.json", m_truth); !written) return fail(written.error());
+      if (auto written = writeTruth(m_demo.truth + "/truth.json", m_truth); !written)
+        return fail(written.error());
     m_progress.report(1.0, "Demo site written");
     return m_demo;
   }
@@ -96,11 +97,14 @@ class DemoWriter {
     m_truth.truthEvery = std::max(1, (m_options.frames + kTruthFrames - 1) / kTruthFrames);
     const RigidTransform siteFromWorld = m_site.worldFromSite.inverse();
     m_cameraFromSite = walkPast(m_options.frames, m_options.seed);
-    for (const RigidTransform& pose : m_cameraFromSite) m_truth.cameraFromWorld.push_back(pose * siteFromWorld);
-    if (auto written = writeColmapModel(m_demo.cameras, m_truth.intrinsics, m_truth.cameraFromWorld); !written)
+    for (const RigidTransform& pose : m_cameraFromSite)
+      m_truth.cameraFromWorld.push_back(pose * siteFromWorld);
+    if (auto written = writeColmapModel(m_demo.cameras, m_truth.intrinsics, m_truth.cameraFromWorld);
+        !written)
       return written;
     const auto wrong = perturbed(m_truth.cameraFromWorld, m_options.seed);
-    if (auto written = writeColmapModel(m_demo.perturbedCameras, m_truth.intrinsics, wrong); !written) return written;
+    if (auto written = writeColmapModel(m_demo.perturbedCameras, m_truth.intrinsics, wrong); !written)
+      return written;
     if (auto written = writeTrajectory(m_demo.trajectory, m_truth.cameraFromWorld); !written) return written;
     if (!m_cameraFromSite.empty())
       m_truth.controlInFirstFrame =
@@ -119,7 +123,8 @@ class DemoWriter {
                       fmt::format("Filming frame {} of {}", frame + 1, m_options.frames));
       FrameTruth truth;
       const ColourImage picture = renderer.render(m_cameraFromSite[frame], frame, truth);
-      if (auto written = writePng(m_demo.images + "/" + frameFileName(frame), picture, m_options.colour); !written)
+      if (auto written = writePng(m_demo.images + "/" + frameFileName(frame), picture, m_options.colour);
+          !written)
         return written;
       if (m_options.truth && frame % m_truth.truthEvery == 0)
         if (auto written = writeFrameTruth(m_demo.truth, frame, truth); !written) return written;
@@ -142,7 +147,8 @@ Result<void> DemoOptions::validate() const {
     return fail(what, "demo options", advice);
   };
   if (points < 100 || points > 10'000'000'000ull)
-    return wrong(fmt::format("The scan cannot have {} points", points), "Ask for 100 to 10 000 000 000 points");
+    return wrong(fmt::format("The scan cannot have {} points", points),
+                 "Ask for 100 to 10 000 000 000 points");
   if (frames < 0 || frames > 9999)
     return wrong(fmt::format("The video cannot have {} frames", frames), "Ask for 0 to 9999 frames");
   if (width < 16 || height < 16 || width > 8192 || height > 8192)
@@ -154,7 +160,8 @@ Result<void> DemoOptions::validate() const {
   return {};
 }
 
-Result<DemoSite> writeDemoSite(const std::string& folder, const DemoOptions& options, const Progress& progress) {
+Result<DemoSite> writeDemoSite(const std::string& folder, const DemoOptions& options,
+                               const Progress& progress) {
   if (auto valid = options.validate(); !valid) return fail(valid.error());
   if (auto made = makeFolder(folder); !made) return fail(made.error());
   std::error_code code;

@@ -17,28 +17,28 @@ struct DemoOptions {
   std::uint64_t points = 2'000'000;  ///< of the scan, over all stations
   int frames = 45;                   ///< of the video, at 15 Hz
   std::uint32_t seed = 1;
-  int width = 1280, height = 960;    ///< of the video
-  bool colour = true;                ///< false: a grayscale camera
+  int width = 1280, height = 960;                          ///< of the video
+  bool colour = true;                                      ///< false: a grayscale camera
   glm::dvec3 siteOrigin{2'683'500.0, 1'247'800.0, 412.0};  ///< Swiss LV95-like; world metres
-  bool truth = true;                 ///< write truth/ beside it
+  bool truth = true;                                       ///< write truth/ beside it
 
   Result<void> validate() const;
 };
 
 /// What was written, absolute paths.
 struct DemoSite {
-  std::string scan;        ///< LAS 1.4 with scanner, row and column as extra bytes
-  std::string images;      ///< folder of PNG frames
-  std::string cameras;     ///< COLMAP text model folder (poses and lens)
-  std::string design;      ///< IFC4
-  std::string designMesh;  ///< OBJ of the same
-  std::string stakePoints; ///< CSV
-  std::string controlPoints;  ///< CSV
-  std::string truth;       ///< folder; see writeDemoSite
-  std::string stations;    ///< JSON: worldFromScanner and grid of each scanner station
+  std::string scan;              ///< LAS 1.4 with scanner, row and column as extra bytes
+  std::string images;            ///< folder of PNG frames
+  std::string cameras;           ///< COLMAP text model folder (poses and lens)
+  std::string design;            ///< IFC4
+  std::string designMesh;        ///< OBJ of the same
+  std::string stakePoints;       ///< CSV
+  std::string controlPoints;     ///< CSV
+  std::string truth;             ///< folder; see writeDemoSite
+  std::string stations;          ///< JSON: worldFromScanner and grid of each scanner station
   std::string perturbedCameras;  ///< COLMAP text model with poses off by about 2 cm and 0.2 degrees
-  std::string trajectory;  ///< TUM: the exact poses, 15 Hz
-  std::string observations;  ///< CSV: control points in frame 0, with 0.3 px noise
+  std::string trajectory;        ///< TUM: the exact poses, 15 Hz
+  std::string observations;      ///< CSV: control points in frame 0, with 0.3 px noise
   std::uint64_t pointCount = 0;
   int frameCount = 0;
 };
@@ -52,6 +52,7 @@ struct DemoSite {
 /// truth/ holds truth.json (exact poses, defects with their amounts, lens), and a frame's exact
 /// depth.NNNN.f32 (row-major float metres, +inf for sky), designdepth.NNNN.f32 and
 /// visibility.NNNN.u8 (0 no design, 1 visible, 2 hidden).
-Result<DemoSite> writeDemoSite(const std::string& folder, const DemoOptions& options, const Progress& progress);
+Result<DemoSite> writeDemoSite(const std::string& folder, const DemoOptions& options,
+                               const Progress& progress);
 
 }  // namespace alidade

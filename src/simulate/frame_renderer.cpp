@@ -30,13 +30,20 @@ struct FrameRenderer::Sample {
 
 FrameRenderer::FrameRenderer(const Camera& camera, const RayScene& asBuilt, const RayScene& design,
                              const Lighting& lighting, std::uint32_t seed, bool colour)
-    : m_camera(camera), m_asBuilt(asBuilt), m_design(design), m_lighting(lighting), m_seed(seed), m_colour(colour),
-      m_pixelAngle(static_cast<float>(1.0 / camera.intrinsics().fx)), m_centres(camera.width(), camera.height()) {
+    : m_camera(camera),
+      m_asBuilt(asBuilt),
+      m_design(design),
+      m_lighting(lighting),
+      m_seed(seed),
+      m_colour(colour),
+      m_pixelAngle(static_cast<float>(1.0 / camera.intrinsics().fx)),
+      m_centres(camera.width(), camera.height()) {
   parallelFor(static_cast<std::size_t>(camera.height()), 8, [&](std::size_t first, std::size_t last, int) {
     for (auto y = static_cast<int>(first); y < static_cast<int>(last); ++y)
       for (int x = 0; x < camera.width(); ++x) {
         const auto direction = camera.unproject({x, y});
-        m_centres.at(x, y) = direction ? glm::dvec2(*direction) : glm::dvec2(std::numeric_limits<double>::quiet_NaN());
+        m_centres.at(x, y) =
+            direction ? glm::dvec2(*direction) : glm::dvec2(std::numeric_limits<double>::quiet_NaN());
       }
   });
 }
@@ -110,8 +117,9 @@ glm::dvec3 FrameRenderer::directionAt(double x, double y) const {
   const int column = std::clamp(static_cast<int>(std::floor(x)), 0, m_centres.width() - 2);
   const int row = std::clamp(static_cast<int>(std::floor(y)), 0, m_centres.height() - 2);
   const double u = x - column, v = y - row;
-  const glm::dvec2 d = glm::mix(glm::mix(m_centres.at(column, row), m_centres.at(column + 1, row), u),
-                                glm::mix(m_centres.at(column, row + 1), m_centres.at(column + 1, row + 1), u), v);
+  const glm::dvec2 d =
+      glm::mix(glm::mix(m_centres.at(column, row), m_centres.at(column + 1, row), u),
+               glm::mix(m_centres.at(column, row + 1), m_centres.at(column + 1, row + 1), u), v);
   return d.x == d.x && d.y == d.y ? glm::dvec3(d, 1.0) : glm::dvec3(0.0);
 }
 
@@ -133,8 +141,8 @@ Rgba8 FrameRenderer::develop(const glm::vec3& radiance, int x, int y, int frame)
     light = glm::vec3(noisy(glm::dot(light, glm::vec3(0.299f, 0.587f, 0.114f))));
   }
   const glm::vec3 shown = glm::clamp(255.0f * displayColour(light) + 0.5f, 0.0f, 255.0f);
-  return {static_cast<std::uint8_t>(shown.r), static_cast<std::uint8_t>(shown.g), static_cast<std::uint8_t>(shown.b),
-          255};
+  return {static_cast<std::uint8_t>(shown.r), static_cast<std::uint8_t>(shown.g),
+          static_cast<std::uint8_t>(shown.b), 255};
 }
 
 ColourImage FrameRenderer::render(const RigidTransform& cameraFromSite, int frame, FrameTruth& truth) const {
@@ -150,7 +158,8 @@ ColourImage FrameRenderer::render(const RigidTransform& cameraFromSite, int fram
   ColourImage picture(width, height);
   parallelFor(static_cast<std::size_t>(height), 4, [&](std::size_t first, std::size_t last, int) {
     // The first two lie across from each other, so that two of them are even as well.
-    static constexpr double offsets[4][2] = {{-0.375, -0.125}, {0.375, 0.125}, {0.125, -0.375}, {-0.125, 0.375}};
+    static constexpr double offsets[4][2] = {
+        {-0.375, -0.125}, {0.375, 0.125}, {0.125, -0.375}, {-0.125, 0.375}};
     for (auto y = static_cast<int>(first); y < static_cast<int>(last); ++y)
       for (int x = 0; x < width; ++x) {
         glm::vec3 radiance = samples.at(x, y).radiance;

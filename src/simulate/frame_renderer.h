@@ -28,8 +28,8 @@ constexpr double kHiddenTolerance = 0.02;
 /// and the colour; pixels on an edge get more. Then vignetting, shot noise and read noise.
 class FrameRenderer {
  public:
-  FrameRenderer(const Camera& camera, const RayScene& asBuilt, const RayScene& design, const Lighting& lighting,
-                std::uint32_t seed, bool colour);
+  FrameRenderer(const Camera& camera, const RayScene& asBuilt, const RayScene& design,
+                const Lighting& lighting, std::uint32_t seed, bool colour);
 
   ColourImage render(const RigidTransform& cameraFromSite, int frame, FrameTruth& truth) const;
 
@@ -51,7 +51,8 @@ class FrameRenderer {
   std::uint32_t m_seed;
   bool m_colour;
   float m_pixelAngle;
-  Image<glm::dvec2> m_centres;  ///< (x, y) of (x, y, 1) at each pixel's centre; NaN where the lens sees nothing
+  Image<glm::dvec2>
+      m_centres;  ///< (x, y) of (x, y, 1) at each pixel's centre; NaN where the lens sees nothing
 };
 
 }  // namespace alidade

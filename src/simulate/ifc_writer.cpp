@@ -18,9 +18,13 @@ namespace alidade {
 namespace {
 
 /// STEP wants a decimal point in every real and a capital E.
-std::string real(double value) { return fmt::format("{:#.9G}", value == 0 ? 0.0 : value); }
+std::string real(double value) {
+  return fmt::format("{:#.9G}", value == 0 ? 0.0 : value);
+}
 
-std::string exactReal(double value) { return fmt::format("{:.6f}", value); }
+std::string exactReal(double value) {
+  return fmt::format("{:.6f}", value);
+}
 
 /// Entities in the order in which they are made, each with its number.
 class StepFile {
@@ -51,11 +55,12 @@ class IfcBuilder {
     std::vector<std::vector<int>> contained(m_site.storeys.size());
     std::vector<int> outside;
     for (const DesignItem& item : m_site.items) {
-      const bool civil = item.ifcType != "IfcColumn" && item.ifcType != "IfcWall" && item.ifcType != "IfcSlab" &&
-                         item.ifcType != "IfcBeam";
+      const bool civil = item.ifcType != "IfcColumn" && item.ifcType != "IfcWall" &&
+                         item.ifcType != "IfcSlab" && item.ifcType != "IfcBeam";
       (civil ? outside : contained[item.storey]).push_back(addItem(item, civil));
     }
-    for (std::size_t i = 0; i < contained.size(); ++i) addContainment(contained[i], m_storeys[i], m_site.storeys[i].name);
+    for (std::size_t i = 0; i < contained.size(); ++i)
+      addContainment(contained[i], m_storeys[i], m_site.storeys[i].name);
     addContainment(outside, m_ifcSite, "Site");
     return header() + m_step.text() + "ENDSEC;\nEND-ISO-10303-21;\n";
   }
@@ -72,7 +77,9 @@ class IfcBuilder {
   int point(const glm::dvec3& p) {
     return m_step.add(fmt::format("IFCCARTESIANPOINT(({},{},{}))", real(p.x), real(p.y), real(p.z)));
   }
-  int point(const glm::dvec2& p) { return m_step.add(fmt::format("IFCCARTESIANPOINT(({},{}))", real(p.x), real(p.y))); }
+  int point(const glm::dvec2& p) {
+    return m_step.add(fmt::format("IFCCARTESIANPOINT(({},{}))", real(p.x), real(p.y)));
+  }
   int direction(const glm::dvec3& d) {
     return m_step.add(fmt::format("IFCDIRECTION(({},{},{}))", real(d.x), real(d.y), real(d.z)));
   }
@@ -98,42 +105,44 @@ class IfcBuilder {
   void addMapConversion(int context) {
     const glm::dvec3 origin = m_site.worldFromSite.translation;
     const bool swiss = !coordinateSystemAt(origin).empty();
-    const int crs = m_step.add(fmt::format("IFCPROJECTEDCRS('{}',{},$,$,$,$,#{})", swiss ? "EPSG:2056" : "Local grid",
-                                           swiss ? "'CH1903+ / LV95'" : "$", m_metre));
+    const int crs =
+        m_step.add(fmt::format("IFCPROJECTEDCRS('{}',{},$,$,$,$,#{})", swiss ? "EPSG:2056" : "Local grid",
+                               swiss ? "'CH1903+ / LV95'" : "$", m_metre));
     m_step.add(fmt::format("IFCMAPCONVERSION(#{},#{},{},{},{},{},{},1.)", context, crs, exactReal(origin.x),
-                           exactReal(origin.y), exactReal(origin.z), fmt::format("{:.15f}", std::cos(m_site.rotation)),
+                           exactReal(origin.y), exactReal(origin.z),
+                           fmt::format("{:.15f}", std::cos(m_site.rotation)),
                            fmt::format("{:.15f}", std::sin(m_site.rotation))));
   }
 
   void addProject() {
     const int world = axisPlacement(glm::dvec3(0.0), glm::dmat3(1.0));
-    const int context = m_step.add(fmt::format("IFCGEOMETRICREPRESENTATIONCONTEXT($,'Model',3,1.0E-5,#{},$)", world));
-    m_body = m_step.add(
-        fmt::format("IFCGEOMETRICREPRESENTATIONSUBCONTEXT('Body','Model',*,*,*,*,#{},$,.MODEL_VIEW.,$)", context));
+    const int context =
+        m_step.add(fmt::format("IFCGEOMETRICREPRESENTATIONCONTEXT($,'Model',3,1.0E-5,#{},$)", world));
+    m_body = m_step.add(fmt::format(
+        "IFCGEOMETRICREPRESENTATIONSUBCONTEXT('Body','Model',*,*,*,*,#{},$,.MODEL_VIEW.,$)", context));
     const int unit = units();
     const int project = m_step.add(fmt::format("IFCPROJECT('{}',$,'Alidade demo site',$,$,$,$,(#{}),#{})",
                                                id("project"), context, unit));
     addMapConversion(context);
     m_sitePlacement = localPlacement(0, glm::dvec3(0.0));
-    m_ifcSite = m_step.add(fmt::format("IFCSITE('{}',$,'Site',$,$,#{},$,$,.ELEMENT.,$,$,$,$,$)", id("site"),
-                                       m_sitePlacement));
+    m_ifcSite = m_step.add(
+        fmt::format("IFCSITE('{}',$,'Site',$,$,#{},$,$,.ELEMENT.,$,$,$,$,$)", id("site"), m_sitePlacement));
     const int buildingPlacement = localPlacement(m_sitePlacement, glm::dvec3(0.0));
     const int building = m_step.add(fmt::format("IFCBUILDING('{}',$,'Hall A',$,$,#{},$,$,.ELEMENT.,$,$,$)",
                                                 id("building"), buildingPlacement));
     for (const Storey& storey : m_site.storeys) {
       m_storeyPlacements.push_back(localPlacement(buildingPlacement, {0, 0, storey.elevation}));
-      m_storeys.push_back(m_step.add(fmt::format("IFCBUILDINGSTOREY('{}',$,'{}',$,$,#{},$,$,.ELEMENT.,{})",
-                                                 id(storey.name), storey.name, m_storeyPlacements.back(),
-                                                 real(storey.elevation))));
+      m_storeys.push_back(
+          m_step.add(fmt::format("IFCBUILDINGSTOREY('{}',$,'{}',$,$,#{},$,$,.ELEMENT.,{})", id(storey.name),
+                                 storey.name, m_storeyPlacements.back(), real(storey.elevation))));
     }
     m_step.add(fmt::format("IFCRELAGGREGATES('{}',$,$,$,#{},(#{}))", id("agg project"), project, m_ifcSite));
     m_step.add(fmt::format("IFCRELAGGREGATES('{}',$,$,$,#{},(#{}))", id("agg site"), m_ifcSite, building));
-    m_step.add(fmt::format("IFCRELAGGREGATES('{}',$,$,$,#{},{})", id("agg building"), building, references(m_storeys)));
+    m_step.add(fmt::format("IFCRELAGGREGATES('{}',$,$,$,#{},{})", id("agg building"), building,
+                           references(m_storeys)));
   }
 
-  int profile(const Prism& prism) {
-    return closedProfile(prism.contour(), prism.holes());
-  }
+  int profile(const Prism& prism) { return closedProfile(prism.contour(), prism.holes()); }
 
   int polyline(const std::vector<glm::dvec2>& points) {
     std::vector<int> ids;
@@ -147,7 +156,8 @@ class IfcBuilder {
     if (holes.empty()) return m_step.add(fmt::format("IFCARBITRARYCLOSEDPROFILEDEF(.AREA.,$,#{})", curve));
     std::vector<int> inner;
     for (const auto& hole : holes) inner.push_back(polyline(hole));
-    return m_step.add(fmt::format("IFCARBITRARYPROFILEDEFWITHVOIDS(.AREA.,$,#{},{})", curve, references(inner)));
+    return m_step.add(
+        fmt::format("IFCARBITRARYPROFILEDEFWITHVOIDS(.AREA.,$,#{},{})", curve, references(inner)));
   }
 
   int style(Material material) {
@@ -155,10 +165,10 @@ class IfcBuilder {
     if (made) return made;
     const glm::dvec3 c = designColour(material);
     const int colour = m_step.add(fmt::format("IFCCOLOURRGB($,{},{},{})", real(c.r), real(c.g), real(c.b)));
-    const int rendering = m_step.add(
-        fmt::format("IFCSURFACESTYLERENDERING(#{},0.,$,$,$,$,$,$,.NOTDEFINED.)", colour));
-    return made = m_step.add(fmt::format("IFCSURFACESTYLE('Material {}',.BOTH.,(#{}))", static_cast<int>(material),
-                                         rendering));
+    const int rendering =
+        m_step.add(fmt::format("IFCSURFACESTYLERENDERING(#{},0.,$,$,$,$,$,$,.NOTDEFINED.)", colour));
+    return made = m_step.add(fmt::format("IFCSURFACESTYLE('Material {}',.BOTH.,(#{}))",
+                                         static_cast<int>(material), rendering));
   }
 
   int addItem(const DesignItem& item, bool civil) {
@@ -172,13 +182,14 @@ class IfcBuilder {
     const int solid = m_step.add(
         fmt::format("IFCEXTRUDEDAREASOLID(#{},#{},#{},{})", area, position, along, real(prism.depth)));
     m_step.add(fmt::format("IFCSTYLEDITEM(#{},(#{}),$)", solid, style(item.material)));
-    const int shape = m_step.add(fmt::format("IFCSHAPEREPRESENTATION(#{},'Body','SweptSolid',(#{}))", m_body, solid));
+    const int shape =
+        m_step.add(fmt::format("IFCSHAPEREPRESENTATION(#{},'Body','SweptSolid',(#{}))", m_body, solid));
     const int product = m_step.add(fmt::format("IFCPRODUCTDEFINITIONSHAPE($,$,(#{}))", shape));
     std::string type = item.ifcType;
     for (char& c : type) c = static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
     const std::string predefined = item.predefined.empty() ? "$" : fmt::format(".{}.", item.predefined);
-    const int element = m_step.add(fmt::format("{}('{}',$,'{}',$,$,#{},#{},$,{})", type, item.globalId, item.name,
-                                               placement, product, predefined));
+    const int element = m_step.add(fmt::format("{}('{}',$,'{}',$,$,#{},#{},$,{})", type, item.globalId,
+                                               item.name, placement, product, predefined));
     addProperties(item, element);
     return element;
   }
@@ -195,8 +206,8 @@ class IfcBuilder {
     const std::string set = fmt::format("Pset_{}Common", item.ifcType.substr(3));
     const int properties = m_step.add(
         fmt::format("IFCPROPERTYSET('{}',$,'{}',$,{})", id(item.name + " set"), set, references(values)));
-    m_step.add(fmt::format("IFCRELDEFINESBYPROPERTIES('{}',$,$,$,(#{}),#{})", id(item.name + " properties"), element,
-                           properties));
+    m_step.add(fmt::format("IFCRELDEFINESBYPROPERTIES('{}',$,$,$,(#{}),#{})", id(item.name + " properties"),
+                           element, properties));
   }
 
   void addContainment(const std::vector<int>& elements, int structure, const std::string& name) {

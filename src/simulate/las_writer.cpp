@@ -66,7 +66,7 @@ Result<void> LasWriter::open(const std::string& path, const glm::dvec3& offset, 
   bytes[25] = 4;
   std::memcpy(bytes.data() + 26, "SIMULATION", 10);
   std::memcpy(bytes.data() + 58, "Alidade demo site", 17);
-  putAt<std::uint16_t>(bytes, 90, 1);     // creation day and year are fixed: same options, same bytes
+  putAt<std::uint16_t>(bytes, 90, 1);  // creation day and year are fixed: same options, same bytes
   putAt<std::uint16_t>(bytes, 92, 2026);
   putAt<std::uint16_t>(bytes, 94, kHeaderSize);
   bytes[104] = 7;
@@ -94,7 +94,9 @@ Result<void> LasWriter::write(const std::vector<LasPoint>& points) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const LasPoint& p = points[i];
     unsigned char* out = m_buffer.data() + i * kPointSize;
-    const auto store = [out](std::size_t at, const auto& value) { std::memcpy(out + at, &value, sizeof value); };
+    const auto store = [out](std::size_t at, const auto& value) {
+      std::memcpy(out + at, &value, sizeof value);
+    };
     for (int axis = 0; axis < 3; ++axis) {
       const auto step = static_cast<std::int64_t>(std::llround((p.position[axis] - m_offset[axis]) / kScale));
       m_low[axis] = m_count + i == 0 ? step : std::min(m_low[axis], step);

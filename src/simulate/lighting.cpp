@@ -38,12 +38,15 @@ std::vector<float> displayCurve() {
     const float root = static_cast<float>(i) * kCurveTop / kCurveSteps;
     const float x = root * root * 0.80f;
     const float shouldered = x < 0.6f ? x : 0.6f + 0.4f * (1.0f - std::exp(-(x - 0.6f) / 0.4f));
-    curve.push_back(shouldered <= 0.0031308f ? 12.92f * shouldered : 1.055f * std::pow(shouldered, 1.0f / 2.4f) - 0.055f);
+    curve.push_back(shouldered <= 0.0031308f ? 12.92f * shouldered
+                                             : 1.055f * std::pow(shouldered, 1.0f / 2.4f) - 0.055f);
   }
   return curve;
 }
 
-float skyWeight(const glm::dvec3& d) { return d.z > -0.05 ? 1.0f : 0.28f; }
+float skyWeight(const glm::dvec3& d) {
+  return d.z > -0.05 ? 1.0f : 0.28f;
+}
 
 }  // namespace
 
@@ -71,7 +74,8 @@ void Lighting::bake() {
           fromBehind += glm::dot(glm::cross(p[t[1]] - p[t[0]], p[t[2]] - p[t[0]]), direction) > 0;
         }
         // A far hit still lets most of the light through: the sky beside it and what the surface sends back.
-        const float open = hit ? 0.16f * static_cast<float>(std::min(1.0, hit.distance / 6.0)) : skyWeight(direction);
+        const float open =
+            hit ? 0.16f * static_cast<float>(std::min(1.0, hit.distance / 6.0)) : skyWeight(direction);
         for (int axis = 0; axis < 3; ++axis) {
           const auto cosine = static_cast<float>(direction[axis]);
           const int face = 2 * axis + (cosine < 0);
@@ -79,7 +83,8 @@ void Lighting::bake() {
           all[face] += std::abs(cosine);
         }
       }
-      for (int face = 0; face < 6; ++face) m_open[i][face] = fromBehind > kDirections / 4 ? -1.0f : seen[face] / all[face];
+      for (int face = 0; face < 6; ++face)
+        m_open[i][face] = fromBehind > kDirections / 4 ? -1.0f : seen[face] / all[face];
     }
   });
 }
@@ -91,7 +96,8 @@ float Lighting::openness(const glm::vec3& position, const glm::vec3& normal) con
   const glm::vec3 squared = normal * normal;
   const glm::ivec3 face(normal.x < 0, 2 + (normal.y < 0), 4 + (normal.z < 0));
   const float outside = 0.5f * (1.0f + normal.z) + 0.28f * 0.5f * (1.0f - normal.z);
-  if (glm::any(glm::lessThan(cell, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(cell + 1, m_cells))) return outside;
+  if (glm::any(glm::lessThan(cell, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(cell + 1, m_cells)))
+    return outside;
   const glm::vec3 t = q - base;
   float sum = 0, weights = 0;
   for (int corner = 0; corner < 8; ++corner) {
@@ -107,8 +113,8 @@ float Lighting::openness(const glm::vec3& position, const glm::vec3& normal) con
   return weights > 0 ? sum / weights : 0.12f;
 }
 
-glm::vec3 Lighting::shade(const glm::dvec3& position, const RayHit& hit, const glm::vec3& toViewer, float footprint,
-                          bool* sunlit) const {
+glm::vec3 Lighting::shade(const glm::dvec3& position, const RayHit& hit, const glm::vec3& toViewer,
+                          float footprint, bool* sunlit) const {
   const SiteObject& object = m_scene.objectOf(hit.triangle);
   const glm::vec3 albedo = surfaceAlbedo(object, position, hit.faceNormal, footprint);
   const float facing = glm::dot(hit.normal, m_towardsSun);
@@ -123,20 +129,24 @@ glm::vec3 Lighting::shade(const glm::dvec3& position, const RayHit& hit, const g
   const glm::vec2 gloss = surfaceGloss(object.material);
   if (gloss.x > 0) {
     const glm::vec3 mirrored = 2.0f * glm::dot(hit.normal, toViewer) * hit.normal - toViewer;
-    const float fresnel = 0.15f + 0.85f * std::pow(1.0f - glm::clamp(glm::dot(hit.normal, toViewer), 0.0f, 1.0f), 4.0f);
+    const float fresnel =
+        0.15f + 0.85f * std::pow(1.0f - glm::clamp(glm::dot(hit.normal, toViewer), 0.0f, 1.0f), 4.0f);
     radiance += gloss.x * fresnel * open * sky(mirrored);
-    if (lit) radiance += gloss.x * 0.6f * std::pow(std::max(0.0f, glm::dot(mirrored, m_towardsSun)), gloss.y) * kSun;
+    if (lit)
+      radiance += gloss.x * 0.6f * std::pow(std::max(0.0f, glm::dot(mirrored, m_towardsSun)), gloss.y) * kSun;
   }
   return radiance;
 }
 
 glm::vec3 Lighting::sky(const glm::vec3& direction) {
   const float up = std::max(direction.z, 0.0f);
-  glm::vec3 colour = glm::mix(glm::vec3(0.92f, 0.96f, 1.0f), glm::vec3(0.20f, 0.40f, 0.78f), std::pow(up, 0.55f));
+  glm::vec3 colour =
+      glm::mix(glm::vec3(0.92f, 0.96f, 1.0f), glm::vec3(0.20f, 0.40f, 0.78f), std::pow(up, 0.55f));
   if (direction.z > 0.02f) {
     const glm::vec2 plane = glm::vec2(direction) / (direction.z + 0.12f);
     const float cloud = fractalNoise(plane * 0.9f + 3.0f, 5, 0.02f);
-    const float cover = glm::clamp((cloud - 0.52f) * 5.0f, 0.0f, 1.0f) * glm::clamp(direction.z * 8.0f, 0.0f, 1.0f);
+    const float cover =
+        glm::clamp((cloud - 0.52f) * 5.0f, 0.0f, 1.0f) * glm::clamp(direction.z * 8.0f, 0.0f, 1.0f);
     colour = glm::mix(colour, glm::vec3(1.05f, 1.05f, 1.04f), 0.75f * cover);
   }
   return colour * 1.15f;
@@ -146,7 +156,8 @@ glm::vec3 displayColour(const glm::vec3& radiance) {
   static const std::vector<float> curve = displayCurve();
   glm::vec3 out;
   for (int i = 0; i < 3; ++i) {
-    const float x = glm::clamp(std::sqrt(std::max(0.0f, radiance[i])) * kCurveSteps / kCurveTop, 0.0f, kCurveSteps - 1.001f);
+    const float x = glm::clamp(std::sqrt(std::max(0.0f, radiance[i])) * kCurveSteps / kCurveTop, 0.0f,
+                               kCurveSteps - 1.001f);
     const int step = static_cast<int>(x);
     out[i] = glm::mix(curve[step], curve[step + 1], x - static_cast<float>(step));
   }

@@ -19,7 +19,8 @@ class Lighting {
  public:
   explicit Lighting(const RayScene& scene);
 
-  /// Linear radiance that leaves a point towards `toViewer` (unit); `sunlit` tells whether the sun reaches it.
+  /// Linear radiance that leaves a point towards `toViewer` (unit); `sunlit` tells whether the sun reaches
+  /// it.
   glm::vec3 shade(const glm::dvec3& position, const RayHit& hit, const glm::vec3& toViewer, float footprint,
                   bool* sunlit = nullptr) const;
 
@@ -35,7 +36,8 @@ class Lighting {
   glm::vec3 m_low{-13.0f, -11.0f, -2.2f};
   float m_cell = 0.5f;
   glm::ivec3 m_cells{60, 46, 18};
-  std::vector<std::array<float, 6>> m_open;  ///< share of the sky seen, by +x -x +y -y +z -z; < 0 inside a solid
+  std::vector<std::array<float, 6>>
+      m_open;  ///< share of the sky seen, by +x -x +y -y +z -z; < 0 inside a solid
 };
 
 /// Linear radiance to an 8-bit sRGB value in [0,1] with a soft shoulder.

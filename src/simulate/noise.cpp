@@ -11,8 +11,8 @@ namespace alidade {
 namespace {
 
 inline std::uint32_t hashCell(int x, int y, int z) {
-  std::uint32_t h = static_cast<std::uint32_t>(x) * 0x8DA6B343u ^ static_cast<std::uint32_t>(y) * 0xD8163841u ^
-                    static_cast<std::uint32_t>(z) * 0xCB1AB31Fu;
+  std::uint32_t h = static_cast<std::uint32_t>(x) * 0x8DA6B343u ^
+                    static_cast<std::uint32_t>(y) * 0xD8163841u ^ static_cast<std::uint32_t>(z) * 0xCB1AB31Fu;
   h ^= h >> 15;
   h *= 0x2C1B3C6Du;
   h ^= h >> 12;
@@ -26,15 +26,21 @@ inline int floorToInt(float x) {
   return truncated - (x < static_cast<float>(truncated));
 }
 
-inline float fade(float t) { return t * t * (3.0f - 2.0f * t); }
-inline float mix(float a, float b, float t) { return a + (b - a) * t; }
+inline float fade(float t) {
+  return t * t * (3.0f - 2.0f * t);
+}
+inline float mix(float a, float b, float t) {
+  return a + (b - a) * t;
+}
 
 /// How much of an octave is left at this footprint.
 float octaveWeight(float wavelength, float footprint) {
   return footprint <= 0 ? 1.0f : glm::clamp(wavelength / (2.0f * footprint) - 0.5f, 0.0f, 1.0f);
 }
 
-inline float toUnit(std::uint32_t hash) { return static_cast<float>(hash >> 8) * 0x1.0p-24f; }
+inline float toUnit(std::uint32_t hash) {
+  return static_cast<float>(hash >> 8) * 0x1.0p-24f;
+}
 
 inline float lattice(const glm::vec3& p) {
   const int x = floorToInt(p.x), y = floorToInt(p.y), z = floorToInt(p.z);
@@ -72,12 +78,22 @@ float fractal(Vector p, int octaves, float footprint) {
 
 }  // namespace
 
-float cellNoise(int x, int y, int z) { return toUnit(hashCell(x, y, z)); }
+float cellNoise(int x, int y, int z) {
+  return toUnit(hashCell(x, y, z));
+}
 
-float valueNoise(const glm::vec3& p) { return lattice(p); }
-float valueNoise(const glm::vec2& p) { return lattice(p); }
+float valueNoise(const glm::vec3& p) {
+  return lattice(p);
+}
+float valueNoise(const glm::vec2& p) {
+  return lattice(p);
+}
 
-float fractalNoise(const glm::vec3& p, int octaves, float footprint) { return fractal(p, octaves, footprint); }
-float fractalNoise(const glm::vec2& p, int octaves, float footprint) { return fractal(p, octaves, footprint); }
+float fractalNoise(const glm::vec3& p, int octaves, float footprint) {
+  return fractal(p, octaves, footprint);
+}
+float fractalNoise(const glm::vec2& p, int octaves, float footprint) {
+  return fractal(p, octaves, footprint);
+}
 
 }  // namespace alidade

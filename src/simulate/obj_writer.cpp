@@ -13,19 +13,26 @@ namespace alidade {
 
 glm::dvec3 designColour(Material material) {
   switch (material) {
-    case Material::Brick: return {0.72, 0.36, 0.26};
-    case Material::ScreedConcrete: return {0.66, 0.68, 0.70};
-    case Material::CastIron: return {0.25, 0.27, 0.30};
-    case Material::ClayPipe: return {0.80, 0.45, 0.20};
-    case Material::Kerb: return {0.80, 0.80, 0.76};
-    default: return {0.58, 0.66, 0.74};
+    case Material::Brick:
+      return {0.72, 0.36, 0.26};
+    case Material::ScreedConcrete:
+      return {0.66, 0.68, 0.70};
+    case Material::CastIron:
+      return {0.25, 0.27, 0.30};
+    case Material::ClayPipe:
+      return {0.80, 0.45, 0.20};
+    case Material::Kerb:
+      return {0.80, 0.80, 0.76};
+    default:
+      return {0.58, 0.66, 0.74};
   }
 }
 
 Result<void> writeDesignObj(const std::string& path, const SiteModel& site) {
   const std::string library = path.substr(0, path.size() - 4) + ".mtl";
   const std::string shortName = library.substr(library.find_last_of('/') + 1);
-  std::string text = "# Alidade demo site: the design, world coordinates in metres, z up\nmtllib " + shortName + "\n";
+  std::string text =
+      "# Alidade demo site: the design, world coordinates in metres, z up\nmtllib " + shortName + "\n";
   const SiteMesh& mesh = site.design;
   for (const glm::dvec3& p : mesh.positions) {
     const glm::dvec3 world = site.worldFromSite * p;
@@ -46,8 +53,8 @@ Result<void> writeDesignObj(const std::string& path, const SiteModel& site) {
   std::string materials;
   for (const Material material : used) {
     const glm::dvec3 colour = designColour(material);
-    materials += fmt::format("newmtl m{}\nKd {:.3f} {:.3f} {:.3f}\n", static_cast<int>(material), colour.r, colour.g,
-                             colour.b);
+    materials += fmt::format("newmtl m{}\nKd {:.3f} {:.3f} {:.3f}\n", static_cast<int>(material), colour.r,
+                             colour.g, colour.b);
   }
   if (auto written = writeWholeFile(library, materials); !written) return written;
   return writeWholeFile(path, text);

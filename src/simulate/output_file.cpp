@@ -73,7 +73,8 @@ Result<void> writeWholeFile(const std::string& path, std::string_view content) {
 Result<void> makeFolder(const std::string& path) {
   std::error_code code;
   std::filesystem::create_directories(path, code);
-  if (code) return fail(fmt::format("The folder cannot be made: {}", code.message()), path, adviceFor(code.value()));
+  if (code)
+    return fail(fmt::format("The folder cannot be made: {}", code.message()), path, adviceFor(code.value()));
   return {};
 }
 

@@ -14,7 +14,8 @@ Result<void> writeStakePoints(const std::string& path, const SiteModel& site) {
   std::string text = "name,E,N,H,code,tolerance\n";
   for (const NamedPoint& point : site.stakePoints) {
     const glm::dvec3 p = site.worldFromSite * point.position;
-    text += fmt::format("{},{:.4f},{:.4f},{:.4f},{},{}\n", point.name, p.x, p.y, p.z, point.code, point.tolerance);
+    text += fmt::format("{},{:.4f},{:.4f},{:.4f},{},{}\n", point.name, p.x, p.y, p.z, point.code,
+                        point.tolerance);
   }
   return writeWholeFile(path, text);
 }
@@ -28,8 +29,8 @@ Result<void> writeControlPoints(const std::string& path, const SiteModel& site) 
   return writeWholeFile(path, text);
 }
 
-std::vector<SeenControlPoint> seenControlPoints(const SiteModel& site, const RayScene& scene, const Camera& camera,
-                                                const RigidTransform& cameraFromSite) {
+std::vector<SeenControlPoint> seenControlPoints(const SiteModel& site, const RayScene& scene,
+                                                const Camera& camera, const RigidTransform& cameraFromSite) {
   std::vector<SeenControlPoint> seen;
   const glm::dvec3 eye = cameraFromSite.centre();
   for (std::size_t i = 0; i < site.controlPoints.size(); ++i) {
@@ -45,14 +46,16 @@ std::vector<SeenControlPoint> seenControlPoints(const SiteModel& site, const Ray
 }
 
 Result<void> writeObservations(const std::string& path, const SiteModel& site,
-                               const std::vector<SeenControlPoint>& seen, double sigmaPx, std::uint32_t seed) {
+                               const std::vector<SeenControlPoint>& seen, double sigmaPx,
+                               std::uint32_t seed) {
   std::string text = "u,v,e,n,h,sigma_px,name\n";
   for (const SeenControlPoint& one : seen) {
     const NamedPoint& point = site.controlPoints[one.point];
     const glm::dvec3 p = site.worldFromSite * point.position;
     Random random(seed, 601, static_cast<std::uint64_t>(one.point));
     const double u = one.pixel.x + sigmaPx * random.normal(), v = one.pixel.y + sigmaPx * random.normal();
-    text += fmt::format("{:.3f},{:.3f},{:.4f},{:.4f},{:.4f},{},{}\n", u, v, p.x, p.y, p.z, sigmaPx, point.name);
+    text +=
+        fmt::format("{:.3f},{:.3f},{:.4f},{:.4f},{:.4f},{},{}\n", u, v, p.x, p.y, p.z, sigmaPx, point.name);
   }
   return writeWholeFile(path, text);
 }

@@ -22,13 +22,13 @@ Result<void> writeControlPoints(const std::string& path, const SiteModel& site);
 
 /// A control point where a frame truly sees it.
 struct SeenControlPoint {
-  int point = 0;  ///< index into SiteModel::controlPoints
+  int point = 0;          ///< index into SiteModel::controlPoints
   glm::dvec2 pixel{0.0};  ///< exact
 };
 
 /// The control points that a frame sees: in the picture, from the front, with nothing before them.
-std::vector<SeenControlPoint> seenControlPoints(const SiteModel& site, const RayScene& scene, const Camera& camera,
-                                                const RigidTransform& cameraFromSite);
+std::vector<SeenControlPoint> seenControlPoints(const SiteModel& site, const RayScene& scene,
+                                                const Camera& camera, const RigidTransform& cameraFromSite);
 
 /// `u,v,e,n,h,sigma_px,name` with this much noise on the pixels.
 Result<void> writeObservations(const std::string& path, const SiteModel& site,

@@ -10,23 +10,28 @@
 
 namespace alidade {
 
-std::string frameFileName(int frame) { return fmt::format("frame_{:04}.png", frame); }
+std::string frameFileName(int frame) {
+  return fmt::format("frame_{:04}.png", frame);
+}
 
 Result<void> writeColmapModel(const std::string& folder, const Intrinsics& in,
                               const std::vector<RigidTransform>& cameraFromWorld) {
   if (auto made = makeFolder(folder); !made) return made;
   const auto& d = in.distortion;
-  std::string cameras = "# Camera list with one line of data per camera:\n#   CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]\n";
-  cameras += fmt::format("1 FULL_OPENCV {} {} {} {} {} {} {} {} {} {} {} {} {} {}\n", in.width, in.height, in.fx, in.fy,
-                         in.cx + 0.5, in.cy + 0.5, d.k[0], d.k[1], d.p1, d.p2, d.k[2], d.q[0], d.q[1], d.q[2]);
-  std::string images = "# Image list with two lines of data per image:\n"
-                       "#   IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME\n"
-                       "#   POINTS2D[] as (X, Y, POINT3D_ID)\n";
+  std::string cameras =
+      "# Camera list with one line of data per camera:\n#   CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]\n";
+  cameras += fmt::format("1 FULL_OPENCV {} {} {} {} {} {} {} {} {} {} {} {} {} {}\n", in.width, in.height,
+                         in.fx, in.fy, in.cx + 0.5, in.cy + 0.5, d.k[0], d.k[1], d.p1, d.p2, d.k[2], d.q[0],
+                         d.q[1], d.q[2]);
+  std::string images =
+      "# Image list with two lines of data per image:\n"
+      "#   IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME\n"
+      "#   POINTS2D[] as (X, Y, POINT3D_ID)\n";
   for (std::size_t i = 0; i < cameraFromWorld.size(); ++i) {
     const auto& q = cameraFromWorld[i].rotation;
     const auto& t = cameraFromWorld[i].translation;
-    images += fmt::format("{} {:.17g} {:.17g} {:.17g} {:.17g} {:.10f} {:.10f} {:.10f} 1 {}\n\n", i + 1, q.w, q.x, q.y,
-                          q.z, t.x, t.y, t.z, frameFileName(static_cast<int>(i)));
+    images += fmt::format("{} {:.17g} {:.17g} {:.17g} {:.17g} {:.10f} {:.10f} {:.10f} 1 {}\n\n", i + 1, q.w,
+                          q.x, q.y, q.z, t.x, t.y, t.z, frameFileName(static_cast<int>(i)));
   }
   if (auto written = writeWholeFile(folder + "/cameras.txt", cameras); !written) return written;
   if (auto written = writeWholeFile(folder + "/images.txt", images); !written) return written;

@@ -20,8 +20,8 @@ struct ProfileRectangle {
 /// IfcExtrudedAreaSolid wants it. A point (x, y, z) of the prism's own frame, 0 <= z <= depth, lies at
 /// `origin + axes * (x, y, z)` in the site frame; axes are right-handed and orthonormal.
 ///
-/// Either a rectangle with rectangular openings (an opening that touches the lower or the upper edge becomes a
-/// notch), or a circle's regular polygon.
+/// Either a rectangle with rectangular openings (an opening that touches the lower or the upper edge becomes
+/// a notch), or a circle's regular polygon.
 struct Prism {
   glm::dvec3 origin{0.0};
   glm::dmat3 axes{1.0};

@@ -37,7 +37,8 @@ class Random {
   /// Nearly normal, within ±3.5 (the sum of four uniforms): for millions of pixels.
   float quickNormal() {
     const std::uint64_t bits = next();
-    const auto sum = static_cast<float>((bits & 0xFFFF) + (bits >> 16 & 0xFFFF) + (bits >> 32 & 0xFFFF) + (bits >> 48));
+    const auto sum =
+        static_cast<float>((bits & 0xFFFF) + (bits >> 16 & 0xFFFF) + (bits >> 32 & 0xFFFF) + (bits >> 48));
     return (sum * 0x1.0p-16f - 2.0f) * 1.7320508f;
   }
 

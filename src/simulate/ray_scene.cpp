@@ -31,7 +31,8 @@ Result<RayScene> RayScene::make(const SiteMesh& mesh) {
   made.m_mesh = &mesh;
   // One thread builds the tree, so that a ray along a shared edge meets the same triangle in every run.
   made.m_handles->device = rtcNewDevice("threads=1,set_affinity=0");
-  if (!made.m_handles->device) return fail("The ray tracing library does not start", "Embree 3", "Check libembree3");
+  if (!made.m_handles->device)
+    return fail("The ray tracing library does not start", "Embree 3", "Check libembree3");
   RTCDevice device = made.m_handles->device;
   RTCScene scene = made.m_handles->scene = rtcNewScene(device);
   rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
@@ -39,8 +40,9 @@ Result<RayScene> RayScene::make(const SiteMesh& mesh) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
       geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), mesh.positions.size()));
-  auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), mesh.triangles.size()));
+  auto* indices = static_cast<std::uint32_t*>(
+      rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t),
+                              mesh.triangles.size()));
   if (!vertices || !indices) {
     rtcReleaseGeometry(geometry);
     return fail("Not enough memory for the site's triangles", "Embree 3");
@@ -53,7 +55,8 @@ Result<RayScene> RayScene::make(const SiteMesh& mesh) {
   rtcReleaseGeometry(geometry);
   rtcCommitScene(scene);
   if (const RTCError code = rtcGetDeviceError(device); code != RTC_ERROR_NONE)
-    return fail("The ray tracing library reports error " + std::to_string(static_cast<int>(code)), "Embree 3");
+    return fail("The ray tracing library reports error " + std::to_string(static_cast<int>(code)),
+                "Embree 3");
   return made;
 }
 

@@ -26,7 +26,8 @@ glm::dvec3 shotDirection(const ScannerModel& model, const ScanStation& station, 
   const double span = model.highestElevation - model.lowestElevation;
   const double elevation = model.highestElevation - (row + 0.5) * span / station.rows;
   const double azimuth = 2.0 * std::numbers::pi * (column + 0.5) / station.columns;
-  return {std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth), std::sin(elevation)};
+  return {std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
+          std::sin(elevation)};
 }
 
 std::vector<ScanStation> placeStations(const SiteModel& site, const ScannerModel& model, std::uint32_t seed) {
@@ -47,12 +48,13 @@ std::vector<ScanStation> placeStations(const SiteModel& site, const ScannerModel
 /// Measures the shots of one station; thread-safe.
 class Shooter {
  public:
-  Shooter(const RayScene& scene, const Lighting& lighting, const ScannerModel& model,
-          std::uint32_t seed, bool colour)
+  Shooter(const RayScene& scene, const Lighting& lighting, const ScannerModel& model, std::uint32_t seed,
+          bool colour)
       : m_scene(scene), m_lighting(lighting), m_model(model), m_seed(seed), m_colour(colour) {}
 
   /// Appends the points of one column; returns how many are mixed pixels.
-  std::uint32_t column(const ScanStation& station, int index, std::uint32_t column, std::vector<LasPoint>& out) const {
+  std::uint32_t column(const ScanStation& station, int index, std::uint32_t column,
+                       std::vector<LasPoint>& out) const {
     const glm::dvec3 origin = station.siteFromScanner.translation;
     const double step = (m_model.highestElevation - m_model.lowestElevation) / station.rows;
     const double straddles = std::min(0.35, m_model.beamRadians / step);
@@ -71,7 +73,8 @@ class Shooter {
       const glm::dvec3 at = origin + hit.distance * direction;
       const auto footprint = static_cast<float>(0.003 + 0.5 * m_model.beamRadians * hit.distance);
       const float incidence = glm::dot(hit.faceNormal, -glm::vec3(direction));
-      const float reflectance = laserReflectance(object.material, surfaceAlbedo(object, at, hit.faceNormal, footprint));
+      const float reflectance =
+          laserReflectance(object.material, surfaceAlbedo(object, at, hit.faceNormal, footprint));
       const double strength = reflectance * (0.15 + 0.85 * incidence);
       // Glass and grazing dark surfaces swallow some shots.
       if (random.uniform() > std::min(1.0, 6.0 * strength + 0.25)) continue;
@@ -92,7 +95,8 @@ class Shooter {
       point.classification = isMixed ? 1 : object.classification;
       point.rgb = rgbOf(at, hit, -glm::vec3(direction), footprint);
       point.pointSource = static_cast<std::uint16_t>(index + 1);
-      point.gpsTime = 4.0e8 + 600.0 * index + 300.0 * (column + static_cast<double>(row) / station.rows) / station.columns;
+      point.gpsTime = 4.0e8 + 600.0 * index +
+                      300.0 * (column + static_cast<double>(row) / station.rows) / station.columns;
       point.row = row;
       point.column = column;
       out.push_back(point);
@@ -101,7 +105,8 @@ class Shooter {
   }
 
  private:
-  glm::u8vec3 rgbOf(const glm::dvec3& at, const RayHit& hit, const glm::vec3& toScanner, float footprint) const {
+  glm::u8vec3 rgbOf(const glm::dvec3& at, const RayHit& hit, const glm::vec3& toScanner,
+                    float footprint) const {
     glm::vec3 shown = displayColour(m_lighting.shade(at, hit, toScanner, footprint));
     if (!m_colour) shown = glm::vec3(glm::dot(shown, glm::vec3(0.299f, 0.587f, 0.114f)));
     return glm::u8vec3(glm::clamp(255.0f * shown + 0.5f, 0.0f, 255.0f));
@@ -146,7 +151,8 @@ Result<void> scanStation(ScanStation& station, int index, const Shooter& shooter
   std::vector<std::uint32_t> mixed(run);
   for (std::uint32_t first = 0; first < station.columns; first += run) {
     if (progress.cancelled()) return fail(cancelledError());
-    progress.report(static_cast<double>(first) / station.columns, fmt::format("Scanning from {}", station.name));
+    progress.report(static_cast<double>(first) / station.columns,
+                    fmt::format("Scanning from {}", station.name));
     const std::uint32_t count = std::min(run, station.columns - first);
     parallelFor(count, 4, [&](std::size_t low, std::size_t high, int) {
       for (std::size_t i = low; i < high; ++i) {
@@ -183,8 +189,9 @@ Result<ScanSummary> writeScan(const std::string& path, const SiteModel& site, co
   if (auto opened = las.open(path, origin, coordinateSystemAt(origin)); !opened) return fail(opened.error());
   const double share = 1.0 / static_cast<double>(summary.stations.size());
   for (std::size_t i = 0; i < summary.stations.size(); ++i) {
-    auto scanned = scanStation(summary.stations[i], static_cast<int>(i), shooter, las,
-                               progress.part(share * static_cast<double>(i), share * static_cast<double>(i + 1)));
+    auto scanned =
+        scanStation(summary.stations[i], static_cast<int>(i), shooter, las,
+                    progress.part(share * static_cast<double>(i), share * static_cast<double>(i + 1)));
     if (!scanned) return fail(scanned.error());
   }
   if (auto finished = las.finish(); !finished) return fail(finished.error());

@@ -20,8 +20,10 @@ constexpr double kColumnHeight = 2.8;
 constexpr double kSlabThickness = 0.25;
 constexpr double kUpperFloor = kColumnHeight + kSlabThickness;
 
-const glm::dmat3 kAlongX(glm::dvec3(1, 0, 0), glm::dvec3(0, 0, 1), glm::dvec3(0, -1, 0));  // profile x-z, depth -y
-const glm::dmat3 kAlongY(glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1), glm::dvec3(1, 0, 0));   // profile y-z, depth x
+const glm::dmat3 kAlongX(glm::dvec3(1, 0, 0), glm::dvec3(0, 0, 1),
+                         glm::dvec3(0, -1, 0));  // profile x-z, depth -y
+const glm::dmat3 kAlongY(glm::dvec3(0, 1, 0), glm::dvec3(0, 0, 1),
+                         glm::dvec3(1, 0, 0));  // profile y-z, depth x
 
 /// Adds elements with the bookkeeping that each needs.
 class Designer {
@@ -45,11 +47,13 @@ class Designer {
     item.prism.origin = {x, y, base};
     item.prism.depth = height;
     item.prism.outline = {{-kColumnHalf, -kColumnHalf}, {kColumnHalf, kColumnHalf}};
-    item.properties = {{"Reference", "C40x40"}, {"LoadBearing", "true"}, {"IsExternal", y == 0 ? "false" : "true"}};
+    item.properties = {
+        {"Reference", "C40x40"}, {"LoadBearing", "true"}, {"IsExternal", y == 0 ? "false" : "true"}};
     return item;
   }
 
-  DesignItem& slab(const std::string& name, int storey, glm::dvec2 low, glm::dvec2 high, double base, double depth) {
+  DesignItem& slab(const std::string& name, int storey, glm::dvec2 low, glm::dvec2 high, double base,
+                   double depth) {
     DesignItem& item = add(name, "IfcSlab", storey, Material::ScreedConcrete);
     item.predefined = storey == 0 ? "BASESLAB" : "FLOOR";
     item.prism.origin = {0, 0, base};
@@ -117,12 +121,14 @@ class Designer {
     return item;
   }
 
-  DesignItem& wall(const std::string& name, int storey, Material material, std::vector<ProfileRectangle> openings) {
+  DesignItem& wall(const std::string& name, int storey, Material material,
+                   std::vector<ProfileRectangle> openings) {
     DesignItem& item = add(name, "IfcWall", storey, material);
     item.predefined = "STANDARD";
     item.prism.depth = 0.2;
     item.prism.openings = std::move(openings);
-    item.properties = {{"LoadBearing", material == Material::Brick ? "false" : "true"}, {"IsExternal", "true"}};
+    item.properties = {{"LoadBearing", material == Material::Brick ? "false" : "true"},
+                       {"IsExternal", "true"}};
     return item;
   }
 
@@ -137,21 +143,24 @@ void addGroundFloor(Designer& design) {
       design.column(fmt::format("Column {}{}", static_cast<char>('A' + i), j + 1), 0, kGridX[i], kGridY[j], 0,
                     kColumnHeight);
   const double in = kColumnHalf, h = kColumnHeight;
-  const ProfileRectangle window{{1.0, 0.9}, {2.4, 2.2}}, second{{3.2, 0.9}, {4.4, 2.2}}, door{{3.2, 0.0}, {4.2, 2.1}};
-  design.wallAlongX("Wall front AB", 0, kGridX[0] + in, kGridX[1] - in, kGridY[0], 0, h, Material::FormedConcrete,
-                    {window, {{3.1, 0.9}, {4.5, 2.2}}});
+  const ProfileRectangle window{{1.0, 0.9}, {2.4, 2.2}}, second{{3.2, 0.9}, {4.4, 2.2}},
+      door{{3.2, 0.0}, {4.2, 2.1}};
+  design.wallAlongX("Wall front AB", 0, kGridX[0] + in, kGridX[1] - in, kGridY[0], 0, h,
+                    Material::FormedConcrete, {window, {{3.1, 0.9}, {4.5, 2.2}}});
   design.wallAlongX("Wall back AB", 0, kGridX[0] + in, kGridX[1] - in, kGridY[2], 0, h, Material::Brick,
                     {window, second});
-  design.wallAlongX("Wall back BC", 0, kGridX[1] + in, kGridX[2] - in, kGridY[2], 0, h, Material::FormedConcrete,
-                    {{{0.8, 0.9}, {2.2, 2.2}}, door});
+  design.wallAlongX("Wall back BC", 0, kGridX[1] + in, kGridX[2] - in, kGridY[2], 0, h,
+                    Material::FormedConcrete, {{{0.8, 0.9}, {2.2, 2.2}}, door});
   design.wallAlongX("Wall back CD", 0, kGridX[2] + in, kGridX[3] - in, kGridY[2], 0, h, Material::Brick,
                     {{{1.6, 0.9}, {3.6, 2.2}}});
-  design.wallAlongY("Wall left 12", 0, kGridY[0] + in, kGridY[1] - in, kGridX[0], 0, h, Material::FormedConcrete,
-                    {{{1.8, 0.9}, {3.2, 2.2}}});
-  design.wallAlongY("Wall left 23", 0, kGridY[1] + in, kGridY[2] - in, kGridX[0], 0, h, Material::FormedConcrete, {});
+  design.wallAlongY("Wall left 12", 0, kGridY[0] + in, kGridY[1] - in, kGridX[0], 0, h,
+                    Material::FormedConcrete, {{{1.8, 0.9}, {3.2, 2.2}}});
+  design.wallAlongY("Wall left 23", 0, kGridY[1] + in, kGridY[2] - in, kGridX[0], 0, h,
+                    Material::FormedConcrete, {});
   design.wallAlongX("Wall inner BC", 0, kGridX[1] + in, kGridX[2] - in, kGridY[1], 0, h, Material::Brick,
                     {{{0.6, 0.0}, {1.6, 2.1}}});
-  design.wallAlongX("Parapet front CD", 0, kGridX[2] + in, kGridX[3] - in, kGridY[0], 0, 0.9, Material::Brick, {});
+  design.wallAlongX("Parapet front CD", 0, kGridX[2] + in, kGridX[3] - in, kGridY[0], 0, 0.9, Material::Brick,
+                    {});
 }
 
 void addUpperFloor(Designer& design) {
@@ -160,19 +169,21 @@ void addUpperFloor(Designer& design) {
     design.beamAlongX(fmt::format("Beam {}", j + 1), 0.25, kGridX[3] + 0.2, kGridY[j], kColumnHeight);
   for (const std::size_t i : {2u, 3u})
     for (std::size_t j = 0; j + 1 < kGridY.size(); ++j)
-      design.beamAlongY(fmt::format("Beam {}{}{}", static_cast<char>('A' + i), j + 1, j + 2), kGridY[j] + 0.15,
-                        kGridY[j + 1] - 0.15, kGridX[i], kColumnHeight);
+      design.beamAlongY(fmt::format("Beam {}{}{}", static_cast<char>('A' + i), j + 1, j + 2),
+                        kGridY[j] + 0.15, kGridY[j + 1] - 0.15, kGridX[i], kColumnHeight);
   for (const std::size_t i : {0u, 1u})
     for (const std::size_t j : {0u, 2u}) {
-      DesignItem& item = design.column(fmt::format("Column {}{} first floor", static_cast<char>('A' + i), j + 1), 1,
-                                       kGridX[i], kGridY[j], kUpperFloor, 2.6);
+      DesignItem& item =
+          design.column(fmt::format("Column {}{} first floor", static_cast<char>('A' + i), j + 1), 1,
+                        kGridX[i], kGridY[j], kUpperFloor, 2.6);
       item.built = j == 2;
     }
-  DesignItem& parapet = design.wallAlongX("Wall front AB first floor", 1, kGridX[0] + 0.2, kGridX[1] - 0.2, kGridY[0],
-                                          kUpperFloor, 2.6, Material::Brick, {{{1.6, 0.9}, {3.6, 2.2}}});
+  DesignItem& parapet =
+      design.wallAlongX("Wall front AB first floor", 1, kGridX[0] + 0.2, kGridX[1] - 0.2, kGridY[0],
+                        kUpperFloor, 2.6, Material::Brick, {{{1.6, 0.9}, {3.6, 2.2}}});
   parapet.built = false;
-  design.wallAlongX("Wall back AB first floor", 1, kGridX[0] + 0.2, kGridX[1] - 0.2, kGridY[2], kUpperFloor, 1.3,
-                    Material::Brick, {});
+  design.wallAlongX("Wall back AB first floor", 1, kGridX[0] + 0.2, kGridX[1] - 0.2, kGridY[2], kUpperFloor,
+                    1.3, Material::Brick, {});
 }
 
 void addCivilWorks(Designer& design, SiteModel& site, std::uint32_t seed) {
@@ -189,14 +200,15 @@ void addCivilWorks(Designer& design, SiteModel& site, std::uint32_t seed) {
   }
   for (std::size_t i = 0; i + 1 < xs.size(); ++i) {
     const double fall = 0.01 * (xs[i + 1] - xs[i]);
-    DesignItem& item = design.bar(fmt::format("Sewer {}-{}", i + 1, i + 2), "IfcPipeSegment", Material::ClayPipe,
-                                  {xs[i] + 0.4, y, -1.62 - 0.01 * (xs[i] - xs[0])},
+    DesignItem& item = design.bar(fmt::format("Sewer {}-{}", i + 1, i + 2), "IfcPipeSegment",
+                                  Material::ClayPipe, {xs[i] + 0.4, y, -1.62 - 0.01 * (xs[i] - xs[0])},
                                   {xs[i + 1] - 0.4, y, -1.62 - 0.01 * (xs[i] - xs[0]) - fall}, 0.16);
     item.predefined = "RIGIDSEGMENT";
   }
   for (int i = 0; i < 6; ++i) {
     const double x0 = -14.0 + 4.0 * i;
-    DesignItem& item = design.add(fmt::format("Kerb {}", i + 1), "IfcBuildingElementProxy", 0, Material::Kerb);
+    DesignItem& item =
+        design.add(fmt::format("Kerb {}", i + 1), "IfcBuildingElementProxy", 0, Material::Kerb);
     item.prism.origin = {x0, -10.0, -0.6};
     item.prism.depth = 0.34;
     item.prism.outline = {{0.0, -0.15}, {3.99, 0.0}};
@@ -215,7 +227,10 @@ void addDesignItems(SiteModel& site, std::uint32_t seed) {
   for (std::size_t i = 0; i < kGridX.size(); ++i)
     for (std::size_t j = 0; j < kGridY.size(); ++j)
       site.stakePoints.push_back({fmt::format("AX{}{}", static_cast<char>('A' + i), j + 1),
-                                  {kGridX[i], kGridY[j], 0.0}, "AXIS", 0.015, {0, 0, 1}});
+                                  {kGridX[i], kGridY[j], 0.0},
+                                  "AXIS",
+                                  0.015,
+                                  {0, 0, 1}});
 }
 
 }  // namespace alidade

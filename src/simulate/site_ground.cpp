@@ -41,8 +41,8 @@ std::vector<double> gradedCuts(double fineLow, double fineHigh, double fine, dou
   return low;
 }
 
-void addHeap(SiteMesh& mesh, std::uint32_t seed, const char* name, Material material, glm::dvec2 centre, double radius,
-             double height, double stretch = 1.0) {
+void addHeap(SiteMesh& mesh, std::uint32_t seed, const char* name, Material material, glm::dvec2 centre,
+             double radius, double height, double stretch = 1.0) {
   SiteObject object;
   object.name = name;
   object.material = material;
@@ -73,7 +73,8 @@ double groundHeight(std::uint32_t seed, double x, double y) {
   z = std::min(z, z * (1 - pad) + pad * std::min(z, -0.36));
   const double far = std::sqrt(x * x + y * y);
   z += 0.9 * smoothStep(35, 90, far) * (1 + noiseAt(seed + 3, x, y, 40, 2));
-  const double ditch = inside(x, y, 12.2, 14.4, -9.4, 7.5, 0.55 + 0.3 * (0.5 + noiseAt(seed + 4, x, y, 0.8, 2)));
+  const double ditch =
+      inside(x, y, 12.2, 14.4, -9.4, 7.5, 0.55 + 0.3 * (0.5 + noiseAt(seed + 4, x, y, 0.8, 2)));
   return z - ditch * (1.42 + 0.12 * noiseAt(seed + 5, x, y, 0.6, 3));
 }
 

@@ -14,8 +14,30 @@ namespace alidade {
 
 /// What a surface is made of: decides colour, texture and laser reflectance.
 enum class Material : std::uint8_t {
-  Concrete, FormedConcrete, ScreedConcrete, Brick, Soil, Gravel, Sand, Asphalt, Grass, Wood, Plywood, Galvanised,
-  PaintedSteel, Rust, CastIron, Kerb, Target, Render, RoofTile, Glass, Foliage, WarningPaint, ClayPipe, Insulation
+  Concrete,
+  FormedConcrete,
+  ScreedConcrete,
+  Brick,
+  Soil,
+  Gravel,
+  Sand,
+  Asphalt,
+  Grass,
+  Wood,
+  Plywood,
+  Galvanised,
+  PaintedSteel,
+  Rust,
+  CastIron,
+  Kerb,
+  Target,
+  Render,
+  RoofTile,
+  Glass,
+  Foliage,
+  WarningPaint,
+  ClayPipe,
+  Insulation
 };
 
 /// A thing of the site. Texture coordinates are taken in its own axes, so that a shifted column carries its

@@ -124,16 +124,24 @@ void addTarget(SiteModel& site, const std::string& name, const glm::dvec3& centr
 void addTargets(SiteModel& site) {
   int number = 0;
   const auto nextName = [&number] { return fmt::format("T{:02}", ++number); };
-  struct OnColumn { const char* column; glm::dvec3 normal; double height; };
-  for (const OnColumn& place : {OnColumn{"Column A1", {0, -1, 0}, 1.5}, OnColumn{"Column B1", {0, -1, 0}, 2.4},
-                                OnColumn{"Column C1", {0, -1, 0}, 1.7}, OnColumn{"Column D1", {0, -1, 0}, 2.2},
-                                OnColumn{"Column D1", {1, 0, 0}, 1.2}, OnColumn{"Column D2", {0, -1, 0}, 1.6},
-                                OnColumn{"Column C2", {0, -1, 0}, 2.3}, OnColumn{"Column D3", {1, 0, 0}, 1.8}}) {
+  struct OnColumn {
+    const char* column;
+    glm::dvec3 normal;
+    double height;
+  };
+  for (const OnColumn& place :
+       {OnColumn{"Column A1", {0, -1, 0}, 1.5}, OnColumn{"Column B1", {0, -1, 0}, 2.4},
+        OnColumn{"Column C1", {0, -1, 0}, 1.7}, OnColumn{"Column D1", {0, -1, 0}, 2.2},
+        OnColumn{"Column D1", {1, 0, 0}, 1.2}, OnColumn{"Column D2", {0, -1, 0}, 1.6},
+        OnColumn{"Column C2", {0, -1, 0}, 2.3}, OnColumn{"Column D3", {1, 0, 0}, 1.8}}) {
     const Prism prism = builtPrism(site, itemNamed(site, place.column));
-    addTarget(site, nextName(), prism.origin + 0.2 * place.normal + glm::dvec3(0, 0, place.height), place.normal,
-              {0, 0, 1});
+    addTarget(site, nextName(), prism.origin + 0.2 * place.normal + glm::dvec3(0, 0, place.height),
+              place.normal, {0, 0, 1});
   }
-  struct OnWall { const char* wall; double x, y; };
+  struct OnWall {
+    const char* wall;
+    double x, y;
+  };
   for (const OnWall& place : {OnWall{"Wall front AB", 0.45, 2.45}, OnWall{"Wall front AB", 2.75, 1.2},
                               OnWall{"Wall front AB", 4.8, 0.5}, OnWall{"Wall inner BC", 3.2, 1.6},
                               OnWall{"Wall inner BC", 4.7, 0.7}, OnWall{"Wall back CD", 0.7, 1.5},
@@ -169,8 +177,8 @@ SiteModel makeSite(std::uint32_t seed, const glm::dvec3& siteOrigin) {
   addElements(site);
   addTargets(site);
   addSurroundings(site.asBuilt, seed);
-  for (const auto& place : {glm::dvec2(-4.0, -12.0), glm::dvec2(6.4, -11.2), glm::dvec2(1.2, -2.7),
-                            glm::dvec2(-1.0, 10.5)})
+  for (const auto& place :
+       {glm::dvec2(-4.0, -12.0), glm::dvec2(6.4, -11.2), glm::dvec2(1.2, -2.7), glm::dvec2(-1.0, 10.5)})
     site.stations.emplace_back(place.x, place.y,
                                std::abs(place.y) < 6 ? 0.0 : groundHeight(seed, place.x, place.y));
   return site;

@@ -39,11 +39,12 @@ void addScaffold(SiteMesh& mesh, std::uint32_t seed) {
   const std::array<double, 2> ys{-7.2, -6.45};
   begin(mesh, "Scaffold", Material::Galvanised);
   for (const double x : xs)
-    for (const double y : ys)
-      mesh.addCylinder({x, y, groundHeight(seed, x, y)}, {x, y, 5.4}, radius);
+    for (const double y : ys) mesh.addCylinder({x, y, groundHeight(seed, x, y)}, {x, y, 5.4}, radius);
   for (const double z : {1.9, 3.9}) {
-    for (const double y : ys) mesh.addCylinder({xs[0] - 0.2, y, z - 0.06}, {xs[3] + 0.2, y, z - 0.06}, radius);
-    for (const double x : xs) mesh.addCylinder({x, ys[0] - 0.1, z - 0.11}, {x, ys[1] + 0.1, z - 0.11}, radius);
+    for (const double y : ys)
+      mesh.addCylinder({xs[0] - 0.2, y, z - 0.06}, {xs[3] + 0.2, y, z - 0.06}, radius);
+    for (const double x : xs)
+      mesh.addCylinder({x, ys[0] - 0.1, z - 0.11}, {x, ys[1] + 0.1, z - 0.11}, radius);
     for (const double rail : {0.5, 1.0})
       mesh.addCylinder({xs[0], ys[0], z + rail}, {xs[3], ys[0], z + rail}, radius);
   }
@@ -94,7 +95,8 @@ void addRebar(SiteMesh& mesh, std::uint32_t seed) {
   for (int i = 0; i < 16; ++i) {
     const double y = -3.6 + 0.03 * i;
     mesh.addCylinder({4.2 + random.uniform(0, 0.3), y, 0.06 + 0.012 * (i % 3)},
-                     {8.0 + random.uniform(0, 0.4), y + random.uniform(-0.05, 0.05), 0.06 + 0.012 * (i % 3)}, 0.008, 6);
+                     {8.0 + random.uniform(0, 0.4), y + random.uniform(-0.05, 0.05), 0.06 + 0.012 * (i % 3)},
+                     0.008, 6);
   }
   begin(mesh, "Bearers", Material::Wood);
   for (const double x : {4.8, 7.2}) mesh.addBox({x, -3.8, 0}, {x + 0.1, -2.9, 0.052});
@@ -116,7 +118,8 @@ void addBrickPallet(SiteMesh& mesh, std::uint32_t seed, glm::dvec2 place, double
   const glm::dmat3 axes = turnAboutZ(angle);
   begin(mesh, "Pallet", Material::Wood, glm::vec3(0.9f), origin);
   for (const double x : {-0.55, -0.05, 0.45}) mesh.addBox({x, -0.5, -0.1}, {x + 0.1, 0.5, 0.1}, axes, origin);
-  for (int i = 0; i < 7; ++i) mesh.addBox({-0.6, -0.5 + 0.148 * i, 0.1}, {0.6, -0.4 + 0.148 * i, 0.125}, axes, origin);
+  for (int i = 0; i < 7; ++i)
+    mesh.addBox({-0.6, -0.5 + 0.148 * i, 0.1}, {0.6, -0.4 + 0.148 * i, 0.125}, axes, origin);
   SiteObject object;
   object.name = "Bricks";
   object.material = Material::Brick;
@@ -124,7 +127,8 @@ void addBrickPallet(SiteMesh& mesh, std::uint32_t seed, glm::dvec2 place, double
   object.textureFromSite = glm::transpose(axes);
   mesh.beginObject(object);
   mesh.addBox({-0.55, -0.45, 0.125}, {0.55, 0.45, 0.125 + 0.0775 * layers}, axes, origin);
-  mesh.addBox({-0.55, -0.45, 0.125 + 0.0775 * layers}, {0.1, 0.45, 0.125 + 0.0775 * (layers + 2)}, axes, origin);
+  mesh.addBox({-0.55, -0.45, 0.125 + 0.0775 * layers}, {0.1, 0.45, 0.125 + 0.0775 * (layers + 2)}, axes,
+              origin);
 }
 
 void addContainer(SiteMesh& mesh, std::uint32_t seed) {
@@ -169,7 +173,8 @@ void addBarrier(SiteMesh& mesh, std::uint32_t seed) {
   }
 }
 
-void addHouse(SiteMesh& mesh, std::uint32_t seed, glm::dvec2 place, double angle, glm::dvec3 size, glm::vec3 tint) {
+void addHouse(SiteMesh& mesh, std::uint32_t seed, glm::dvec2 place, double angle, glm::dvec3 size,
+              glm::vec3 tint) {
   const glm::dvec3 origin(place.x, place.y, groundHeight(seed, place.x, place.y) - 0.6);
   const glm::dmat3 axes = turnAboutZ(angle);
   const auto at = [&](double x, double y, double z) { return origin + axes * glm::dvec3(x, y, z); };
@@ -177,8 +182,10 @@ void addHouse(SiteMesh& mesh, std::uint32_t seed, glm::dvec2 place, double angle
   begin(mesh, "House", Material::Render, tint);
   mesh.addBox({0, 0, 0}, {w, d, h}, axes, origin);
   for (const double x : {0.0, w}) {
-    if (x == 0) mesh.addTriangle(at(x, d, h), at(x, 0, h), at(x, d / 2, ridge));
-    else mesh.addTriangle(at(x, 0, h), at(x, d, h), at(x, d / 2, ridge));
+    if (x == 0)
+      mesh.addTriangle(at(x, d, h), at(x, 0, h), at(x, d / 2, ridge));
+    else
+      mesh.addTriangle(at(x, 0, h), at(x, d, h), at(x, d / 2, ridge));
   }
   begin(mesh, "Roof", Material::RoofTile);
   const double e = 0.5, drop = 0.38;
@@ -234,7 +241,8 @@ void addCrane(SiteMesh& mesh) {
     }
   }
   const glm::dvec3 head = foot + glm::dvec3(0, 0, top);
-  const glm::dvec3 along = glm::normalize(glm::dvec3(-1, -0.35, 0)), across(-along.y, along.x, 0), up(0, 0, 1);
+  const glm::dvec3 along = glm::normalize(glm::dvec3(-1, -0.35, 0)), across(-along.y, along.x, 0),
+                   up(0, 0, 1);
   for (const double side : {-0.5, 0.5})
     mesh.addCylinder(head - 9.0 * along + side * across, head + 30.0 * along + side * across, 0.08, 6);
   mesh.addCylinder(head - 2.0 * along + 1.1 * up, head + 30.0 * along + 1.1 * up, 0.08, 6);
@@ -259,9 +267,15 @@ void addNeighbours(SiteMesh& mesh, std::uint32_t seed) {
   addHouse(mesh, seed, {50, -4}, 1.45, {15, 9, 6.2}, {0.80f, 0.80f, 0.76f});
   addHouse(mesh, seed, {-42, -6}, 1.7, {15, 10, 8.0}, {0.84f, 0.76f, 0.72f});
   addHouse(mesh, seed, {-12, -34}, 0.02, {22, 10, 9.0}, {0.80f, 0.82f, 0.86f});
-  static constexpr std::array<std::array<double, 3>, 9> trees{{{-24, 27, 8.5}, {-17.5, 31, 7.0}, {11, 33, 9.5},
-                                                              {17.5, 29, 6.5}, {31, 22, 8.0}, {33, 8, 7.5},
-                                                              {-29, 14, 9.0}, {-27, -1, 6.5}, {20, -30, 9.0}}};
+  static constexpr std::array<std::array<double, 3>, 9> trees{{{-24, 27, 8.5},
+                                                               {-17.5, 31, 7.0},
+                                                               {11, 33, 9.5},
+                                                               {17.5, 29, 6.5},
+                                                               {31, 22, 8.0},
+                                                               {33, 8, 7.5},
+                                                               {-29, 14, 9.0},
+                                                               {-27, -1, 6.5},
+                                                               {20, -30, 9.0}}};
   for (const auto& [x, y, height] : trees) addTree(mesh, seed, {x, y}, height);
   const auto hoarding = [&](glm::dvec2 from, glm::dvec2 to) {
     const double length = glm::length(to - from);

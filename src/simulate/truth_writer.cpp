@@ -20,13 +20,19 @@ static_assert(std::endian::native == std::endian::little, "truth is written litt
 
 using Json = nlohmann::ordered_json;
 
-Json toJson(const glm::dvec3& v) { return Json::array({v.x, v.y, v.z}); }
-Json toJson(const glm::dvec2& v) { return Json::array({v.x, v.y}); }
+Json toJson(const glm::dvec3& v) {
+  return Json::array({v.x, v.y, v.z});
+}
+Json toJson(const glm::dvec2& v) {
+  return Json::array({v.x, v.y});
+}
 Json toJson(const RigidTransform& t) {
   return {{"rotation_wxyz", {t.rotation.w, t.rotation.x, t.rotation.y, t.rotation.z}},
           {"translation_m", toJson(t.translation)}};
 }
-Json toJson(const ProfileRectangle& r) { return {{"low_m", toJson(r.low)}, {"high_m", toJson(r.high)}}; }
+Json toJson(const ProfileRectangle& r) {
+  return {{"low_m", toJson(r.low)}, {"high_m", toJson(r.high)}};
+}
 
 Json stationsJson(const ScanSummary& scan) {
   Json stations = Json::array();
@@ -49,8 +55,10 @@ Json prismJson(const Prism& prism, const RigidTransform& worldFromSite) {
             {"y_axis", toJson(worldFromSite.rotation * prism.axes[1])},
             {"z_axis", toJson(worldFromSite.rotation * prism.axes[2])},
             {"depth_m", prism.depth}};
-  if (prism.circleRadius > 0) json["circle_radius_m"] = prism.circleRadius;
-  else json["outline"] = toJson(prism.outline);
+  if (prism.circleRadius > 0)
+    json["circle_radius_m"] = prism.circleRadius;
+  else
+    json["outline"] = toJson(prism.outline);
   Json openings = Json::array();
   for (const auto& opening : prism.openings) openings.push_back(toJson(opening));
   if (!openings.empty()) json["openings"] = openings;
@@ -92,9 +100,9 @@ Json defectsJson(const SiteModel& site) {
 
 Json cameraJson(const Intrinsics& in) {
   const auto& d = in.distortion;
-  return {{"model", "OPENCV5"}, {"width", in.width}, {"height", in.height}, {"fx", in.fx}, {"fy", in.fy},
-          {"cx", in.cx},        {"cy", in.cy},       {"k1", d.k[0]},        {"k2", d.k[1]}, {"p1", d.p1},
-          {"p2", d.p2},         {"k3", d.k[2]}};
+  return {{"model", "OPENCV5"}, {"width", in.width}, {"height", in.height}, {"fx", in.fx},
+          {"fy", in.fy},        {"cx", in.cx},       {"cy", in.cy},         {"k1", d.k[0]},
+          {"k2", d.k[1]},       {"p1", d.p1},        {"p2", d.p2},          {"k3", d.k[2]}};
 }
 
 Json framesJson(const DemoTruth& truth) {
@@ -120,36 +128,38 @@ Result<void> writeTruth(const std::string& path, const DemoTruth& truth) {
     control.push_back({{"name", site.controlPoints[seen.point].name},
                        {"world_m", toJson(site.worldFromSite * site.controlPoints[seen.point].position)},
                        {"pixel", toJson(seen.pixel)}});
-  const Json json{
-      {"seed", truth.options->seed},
-      {"world_from_site", toJson(site.worldFromSite)},
-      {"hidden_tolerance_m", kHiddenTolerance},
-      {"visibility_rule",
-       "2 (hidden) where the as-built depth at the pixel's centre is more than hidden_tolerance_m less than the "
-       "design's; else 1 (visible); 0 where the ray meets no design"},
-      {"depth_every_nth_frame", truth.truthEvery},
-      {"camera", cameraJson(truth.intrinsics)},
-      {"frames", framesJson(truth)},
-      {"scan",
-       {{"points", truth.scan.points},
-        {"angular_step_rad", truth.scan.stepRadians},
-        {"highest_elevation_rad", truth.scanner.highestElevation},
-        {"lowest_elevation_rad", truth.scanner.lowestElevation},
-        {"range_noise_m", truth.scanner.rangeNoiseMeters},
-        {"stations", stationsJson(truth.scan)}}},
-      {"control_points_in_first_frame", control},
-      {"defects", defectsJson(site)},
-      {"elements", elementsJson(site)}};
+  const Json json{{"seed", truth.options->seed},
+                  {"world_from_site", toJson(site.worldFromSite)},
+                  {"hidden_tolerance_m", kHiddenTolerance},
+                  {"visibility_rule",
+                   "2 (hidden) where the as-built depth at the pixel's centre is more than "
+                   "hidden_tolerance_m less than the "
+                   "design's; else 1 (visible); 0 where the ray meets no design"},
+                  {"depth_every_nth_frame", truth.truthEvery},
+                  {"camera", cameraJson(truth.intrinsics)},
+                  {"frames", framesJson(truth)},
+                  {"scan",
+                   {{"points", truth.scan.points},
+                    {"angular_step_rad", truth.scan.stepRadians},
+                    {"highest_elevation_rad", truth.scanner.highestElevation},
+                    {"lowest_elevation_rad", truth.scanner.lowestElevation},
+                    {"range_noise_m", truth.scanner.rangeNoiseMeters},
+                    {"stations", stationsJson(truth.scan)}}},
+                  {"control_points_in_first_frame", control},
+                  {"defects", defectsJson(site)},
+                  {"elements", elementsJson(site)}};
   return writeWholeFile(path, json.dump(1) + "\n");
 }
 
 Result<void> writeFrameTruth(const std::string& folder, int frame, const FrameTruth& truth) {
   const auto bytes = [](const auto& image) {
-    return std::string_view(reinterpret_cast<const char*>(image.data()), image.size() * sizeof(*image.data()));
+    return std::string_view(reinterpret_cast<const char*>(image.data()),
+                            image.size() * sizeof(*image.data()));
   };
   if (auto done = writeWholeFile(fmt::format("{}/depth.{:04}.f32", folder, frame), bytes(truth.depth)); !done)
     return done;
-  if (auto done = writeWholeFile(fmt::format("{}/designdepth.{:04}.f32", folder, frame), bytes(truth.designDepth));
+  if (auto done =
+          writeWholeFile(fmt::format("{}/designdepth.{:04}.f32", folder, frame), bytes(truth.designDepth));
       !done)
     return done;
   return writeWholeFile(fmt::format("{}/visibility.{:04}.u8", folder, frame), bytes(truth.visibility));

@@ -22,7 +22,8 @@
 namespace alidade::demo_test {
 
 inline std::string freshFolder(const std::string& name) {
-  const auto folder = std::filesystem::temp_directory_path() / ("alidade-demo-" + std::to_string(::getpid()) + "-" + name);
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("alidade-demo-" + std::to_string(::getpid()) + "-" + name);
   std::filesystem::remove_all(folder);
   return folder.string();
 }
@@ -57,12 +58,15 @@ std::vector<T> arrayOf(const std::string& path) {
   return values;
 }
 
-inline glm::dvec3 vectorOf(const nlohmann::json& json) { return {json.at(0), json.at(1), json.at(2)}; }
+inline glm::dvec3 vectorOf(const nlohmann::json& json) {
+  return {json.at(0), json.at(1), json.at(2)};
+}
 
 inline RigidTransform transformOf(const nlohmann::json& json) {
   const auto& q = json.at("rotation_wxyz");
-  return {glm::dquat(q.at(0).get<double>(), q.at(1).get<double>(), q.at(2).get<double>(), q.at(3).get<double>()),
-          vectorOf(json.at("translation_m"))};
+  return {
+      glm::dquat(q.at(0).get<double>(), q.at(1).get<double>(), q.at(2).get<double>(), q.at(3).get<double>()),
+      vectorOf(json.at("translation_m"))};
 }
 
 /// One small site for all tests of this binary, and its truth.json.

@@ -43,7 +43,9 @@ std::vector<ScanPoint> readScan(const std::string& las) {
 struct Box {
   glm::dvec3 origin, x, y, z, low, high;
   explicit Box(const json& prism)
-      : origin(vectorOf(prism.at("origin_m"))), x(vectorOf(prism.at("x_axis"))), y(vectorOf(prism.at("y_axis"))),
+      : origin(vectorOf(prism.at("origin_m"))),
+        x(vectorOf(prism.at("x_axis"))),
+        y(vectorOf(prism.at("y_axis"))),
         z(vectorOf(prism.at("z_axis"))) {
     const auto& low2 = prism.at("outline").at("low_m");
     const auto& high2 = prism.at("outline").at("high_m");
@@ -77,7 +79,8 @@ TEST_F(DemoSiteTest, ScanIsValidLas14OfPointFormat7) {
   EXPECT_EQ(las.size(), offset + 44 * site().pointCount);
   // The VLRs fill the space between header and points exactly.
   std::size_t at = 375;
-  for (std::uint32_t i = 0; i < valueAt<std::uint32_t>(las, 100); ++i) at += 54 + valueAt<std::uint16_t>(las, at + 20);
+  for (std::uint32_t i = 0; i < valueAt<std::uint32_t>(las, 100); ++i)
+    at += 54 + valueAt<std::uint16_t>(las, at + 20);
   EXPECT_EQ(at, offset);
   EXPECT_NE(las.find("CH1903+ / LV95"), std::string::npos);
 }
@@ -109,8 +112,8 @@ TEST_F(DemoSiteTest, EveryPointLiesOnTheRayOfItsRowAndColumn) {
     const glm::dvec3 local = transformOf(station.at("world_from_scanner")).inverse() * p.position;
     const double elevation = high - (p.row + 0.5) * (high - low) / rows;
     const double azimuth = 2 * M_PI * (p.column + 0.5) / columns;
-    const glm::dvec3 direction(std::cos(elevation) * std::cos(azimuth), std::cos(elevation) * std::sin(azimuth),
-                               std::sin(elevation));
+    const glm::dvec3 direction(std::cos(elevation) * std::cos(azimuth),
+                               std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
     // Only the rounding to 0.1 mm takes a point off its ray.
     ASSERT_LT(glm::length(local - glm::dot(local, direction) * direction), 1.2e-4);
   }
@@ -122,7 +125,8 @@ TEST_F(DemoSiteTest, PointsOnTheSlabLieOnItsPlaneWithinTheRangeNoise) {
   int count = 0;
   for (const auto& p : readScan(bytesOf(site().scan))) {
     const glm::dvec3 local = slab.local(p.position);
-    // A mixed pixel carries class 1; props, walls and bars stand on the slab: only what is near its top counts.
+    // A mixed pixel carries class 1; props, walls and bars stand on the slab: only what is near its top
+    // counts.
     if (p.classification != 6 || std::abs(local.z - slab.high.z) > 0.03) continue;
     if (glm::any(glm::lessThan(glm::dvec2(local), glm::dvec2(slab.low) + 0.3)) ||
         glm::any(glm::greaterThan(glm::dvec2(local), glm::dvec2(slab.high) - 0.3)))
@@ -144,7 +148,8 @@ TEST_F(DemoSiteTest, PointsClassedAsBuildingLieOnTheDesignButForTheDefects) {
   for (const auto& one : truth().at("elements")) {
     if (!one.at("prism").contains("outline")) continue;
     all.emplace_back(one.at("prism"));
-    if (std::find(defective.begin(), defective.end(), one.at("name")) == defective.end()) sound.emplace_back(one.at("prism"));
+    if (std::find(defective.begin(), defective.end(), one.at("name")) == defective.end())
+      sound.emplace_back(one.at("prism"));
   }
   int off = 0, count = 0;
   for (const auto& p : readScan(bytesOf(site().scan))) {
@@ -176,21 +181,23 @@ TEST_F(DemoSiteTest, TheShiftedColumnStandsWhereTruthSaysAndNotWhereTheDesignSay
   Box built = designed;
   built.origin += shift;
   const Box wall(element(tilted.at("element")).at("prism"));
-  const glm::dvec3 axisPoint = vectorOf(tilted.at("axis_point_m")), axis = vectorOf(tilted.at("axis_direction"));
+  const glm::dvec3 axisPoint = vectorOf(tilted.at("axis_point_m")),
+                   axis = vectorOf(tilted.at("axis_direction"));
   const glm::dquat untilt = glm::angleAxis(-tilted.at("tilt_rad").get<double>(), axis);
   int near = 0, onBuilt = 0, onDesigned = 0, onTilted = 0, nearWall = 0;
   for (const auto& p : readScan(bytesOf(dense->scan))) {
     if (p.classification != 6) continue;
     const double height = built.local(p.position).z;
-    if (height > 0.9 && height < 2.7 && built.distance(p.position) < 0.012 && built.distance(p.position) > -0.15) {
+    if (height > 0.9 && height < 2.7 && built.distance(p.position) < 0.012 &&
+        built.distance(p.position) > -0.15) {
       ++near;
       onBuilt += std::abs(built.distance(p.position)) < 0.008;
       onDesigned += std::abs(designed.distance(p.position)) < 0.008;
     }
     const glm::dvec3 upright = axisPoint + untilt * (p.position - axisPoint);
     const glm::dvec3 local = wall.local(upright);
-    if (local.x < 0.3 || local.x > wall.high.x - 0.3 || local.y < 0.6 * wall.high.y || local.y > wall.high.y - 0.05 ||
-        std::abs(local.z - 0.5 * wall.high.z) > 0.5 * wall.high.z + 0.02)
+    if (local.x < 0.3 || local.x > wall.high.x - 0.3 || local.y < 0.6 * wall.high.y ||
+        local.y > wall.high.y - 0.05 || std::abs(local.z - 0.5 * wall.high.z) > 0.5 * wall.high.z + 0.02)
       continue;
     if (std::abs(local.z - 0.5 * wall.high.z) < 0.5 * wall.high.z - 0.02) continue;  // a reveal
     ++nearWall;

@@ -18,7 +18,8 @@ namespace fs = std::filesystem;
 std::map<std::string, std::string> contentsOf(const std::string& folder) {
   std::map<std::string, std::string> contents;
   for (const auto& entry : fs::recursive_directory_iterator(folder))
-    if (entry.is_regular_file()) contents[fs::relative(entry.path(), folder).generic_string()] = bytesOf(entry.path().string());
+    if (entry.is_regular_file())
+      contents[fs::relative(entry.path(), folder).generic_string()] = bytesOf(entry.path().string());
   return contents;
 }
 
@@ -35,7 +36,8 @@ TEST(DemoSite, SameOptionsGiveTheSameBytesAndAnotherSeedDoesNot) {
   const auto a = contentsOf(first), b = contentsOf(second), c = contentsOf(third);
   ASSERT_EQ(a.size(), b.size());
   for (const auto& [name, content] : a) EXPECT_TRUE(b.count(name) && b.at(name) == content) << name;
-  for (const char* name : {"scan.las", "images/frame_0000.png", "design.ifc", "sparse/images.txt", "truth/truth.json"})
+  for (const char* name :
+       {"scan.las", "images/frame_0000.png", "design.ifc", "sparse/images.txt", "truth/truth.json"})
     EXPECT_NE(a.at(name), c.at(name)) << name;
   for (const auto& folder : {first, second, third}) fs::remove_all(folder);
 }

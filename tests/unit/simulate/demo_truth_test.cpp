@@ -30,7 +30,8 @@ Camera cameraOf(const nlohmann::json& json) {
 /// Slab test against a box in its own frame: depth along a ray whose z is 1, or infinity.
 double boxDepth(const glm::dvec3& eye, const glm::dvec3& ray, const nlohmann::json& prism) {
   const glm::dvec3 origin = vectorOf(prism.at("origin_m"));
-  const glm::dvec3 axes[3] = {vectorOf(prism.at("x_axis")), vectorOf(prism.at("y_axis")), vectorOf(prism.at("z_axis"))};
+  const glm::dvec3 axes[3] = {vectorOf(prism.at("x_axis")), vectorOf(prism.at("y_axis")),
+                              vectorOf(prism.at("z_axis"))};
   const auto& low2 = prism.at("outline").at("low_m");
   const auto& high2 = prism.at("outline").at("high_m");
   const double low[3] = {low2.at(0), low2.at(1), 0.0};
@@ -66,14 +67,15 @@ TEST_F(DemoTruth, DesignDepthIsThatOfTheNearestBoxInClosedForm) {
   for (int y = 3; y < height; y += 7)
     for (int x = 3; x < width; x += 7) {
       const Ray r = ray(0, x, y);
-      // Elements without openings that are boxes; where one of them is the nearest, the depth must be its own. Those
-      // with openings or round ones may stand before it, never behind.
+      // Elements without openings that are boxes; where one of them is the nearest, the depth must be its
+      // own. Those with openings or round ones may stand before it, never behind.
       double solid = std::numeric_limits<double>::infinity(), other = solid;
       for (const auto& one : truth().at("elements")) {
         const auto& prism = one.at("prism");
         if (!prism.contains("outline")) continue;
         const double d = boxDepth(r.eye, r.direction, prism);
-        (prism.contains("openings") ? other : solid) = std::min(prism.contains("openings") ? other : solid, d);
+        (prism.contains("openings") ? other : solid) =
+            std::min(prism.contains("openings") ? other : solid, d);
       }
       const double found = depth[static_cast<std::size_t>(y) * width + x];
       if (!(solid < other) || found < solid - 0.001) continue;
