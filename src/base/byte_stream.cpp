@@ -21,7 +21,7 @@ ByteStream::ByteStream(const InputFile& file, std::uint64_t offset) : m_file(fil
 
 Result<std::size_t> ByteStream::fill(std::size_t count) {
   if (m_end - m_begin >= count) return m_end - m_begin;
-  std::memmove(m_buffer.data(), m_buffer.data() + m_begin, m_end - m_begin);
+  if (m_begin > 0) std::memmove(m_buffer.data(), m_buffer.data() + m_begin, m_end - m_begin);
   m_end -= m_begin;
   m_begin = 0;
   // Never more than the file has: a short file needs a short buffer.
