@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include "base/log.h"
 #include "overlay/annotation_painter.h"
 #include "raster/occlusion.h"
 #include "unit/overlay/scenes.h"
@@ -59,6 +60,9 @@ FrameDescription boxesFrame(const glm::dvec3& origin = glm::dvec3(0), int width 
 class DeviceTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
+    s_sink = addLogSink([](LogLevel level, const std::string& message) {
+      if (level >= LogLevel::Warning && message.find("Validation") != std::string::npos) ++s_validationMessages;
+    });
     auto made = createVulkanDevice();
     ASSERT_TRUE(made) << made.error().text();
     s_device = made->release();
@@ -66,6 +70,8 @@ class DeviceTest : public testing::Test {
   static void TearDownTestSuite() {
     delete s_device;
     s_device = nullptr;
+    removeLogSink(s_sink);
+    EXPECT_EQ(s_validationMessages, 0) << "the validation layer objects; see the log above";
   }
   /// The frame's design before the analytic scan, without renderer and points.
   OverlayDevice::Output draw(const FrameDescription& frame, const DepthImage* scan, const ColourImage* points = nullptr) {
@@ -78,7 +84,9 @@ class DeviceTest : public testing::Test {
     return output ? std::move(*output) : OverlayDevice::Output{};
   }
   static OverlayDevice* s_device;
+  static int s_sink, s_validationMessages;
 };
+int DeviceTest::s_sink = 0, DeviceTest::s_validationMessages = 0;
 OverlayDevice* DeviceTest::s_device = nullptr;
 
 std::size_t differingPixels(const ColourImage& a, const ColourImage& b, int least = 3) {
