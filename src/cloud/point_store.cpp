@@ -42,7 +42,9 @@ class MemoryPointStore : public PointStore {
   std::span<const DisplayPoint> points() const override { return m_points; }
   std::span<const float> levels() const override { return m_levels; }
   double medianSpacing() const override { return m_medianSpacing; }
-  glm::dvec3 sourcePosition(std::uint64_t point) const override { return m_source.position(m_sourceIndex[point]); }
+  glm::dvec3 sourcePosition(std::uint64_t point) const override {
+    return m_source.position(m_sourceIndex[point]);
+  }
   std::uint64_t sourceIndex(std::uint64_t point) const override { return m_sourceIndex[point]; }
   std::optional<glm::u8vec3> sourceColour(std::uint64_t point) const override {
     return m_source.colour(m_sourceIndex[point]);
@@ -117,8 +119,8 @@ struct PointStoreBuilder::Impl {
   Result<std::shared_ptr<const PointStore>> build(const Progress& progress) {
     const std::uint64_t count = source.size() - source.droppedCount();
     if (source.size() >= std::numeric_limits<std::uint32_t>::max()) {
-      return fail("The cloud has more points than a store in memory can hold", std::to_string(count) + " points",
-                  "Open it in parts of fewer than 4 billion points");
+      return fail("The cloud has more points than a store in memory can hold",
+                  std::to_string(count) + " points", "Open it in parts of fewer than 4 billion points");
     }
     auto store = std::make_shared<MemoryPointStore>();
     store->m_law = LevelLaw::forPointCount(count, options.dimensions);

@@ -36,13 +36,13 @@ struct CloudNode {
   /// World metres: position = origin + xyz * step. Half a step inside the cube's low corner, so that
   /// a display position is at most step/2 from its source in each axis.
   glm::dvec3 origin{0};
-  double step = 0;       ///< metres a 16-bit unit; a power of two
-  double size = 0;       ///< edge of the cube, metres: 65536 steps
-  Bounds bounds;         ///< of the source points in the node and in all below it, world
+  double step = 0;               ///< metres a 16-bit unit; a power of two
+  double size = 0;               ///< edge of the cube, metres: 65536 steps
+  Bounds bounds;                 ///< of the source points in the node and in all below it, world
   std::uint32_t depth = 0;       ///< size = root size / 2^depth
   std::int32_t firstChild = -1;  ///< children are contiguous: [firstChild, firstChild + childCount)
   std::uint32_t childCount = 0;
-  std::uint64_t first = 0;       ///< into points()
+  std::uint64_t first = 0;  ///< into points()
   std::uint32_t count = 0;
   /// Metres between neighbours here when every level is drawn: the side of a square of surface that
   /// holds one point. When a share F of the levels is drawn it is spacing / sqrt(F).

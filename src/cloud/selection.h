@@ -30,8 +30,8 @@ struct SelectionOptions {
   double density = 1.0;  ///< the slider, 0..1
   DensityLaw law = DensityLaw::PointsPerPixel;
   double pointsPerSquareMetre = 150000.0;
-  double targetSpacingPx = 0.75;     ///< wanted distance between neighbours on screen at density 1
-  std::uint64_t pointBudget = 0;     ///< 0: none
+  double targetSpacingPx = 0.75;  ///< wanted distance between neighbours on screen at density 1
+  std::uint64_t pointBudget = 0;  ///< 0: none
 };
 
 /// Which prefixes to draw for a camera: nodes inside the field of view of the real (distorted) lens,

@@ -22,7 +22,8 @@ std::uint16_t rgb565(unsigned r, unsigned g, unsigned b) {
 
 bool SourceColumns::isUsable(const glm::dvec3& p) {
   // NaN fails every comparison.
-  return std::abs(p.x) <= kFarthestMeters && std::abs(p.y) <= kFarthestMeters && std::abs(p.z) <= kFarthestMeters;
+  return std::abs(p.x) <= kFarthestMeters && std::abs(p.y) <= kFarthestMeters &&
+         std::abs(p.z) <= kFarthestMeters;
 }
 
 void SourceColumns::add(const PointBatch& batch) {
@@ -31,7 +32,8 @@ void SourceColumns::add(const PointBatch& batch) {
   for (std::size_t i = 0; i < batch.size(); ++i) {
     if ((m_size & kMask) == 0) {
       m_blocks.push_back(std::make_unique<Block>());
-      const std::size_t wanted = std::min<std::size_t>(kMask + 1, m_blocks.size() == 1 ? batch.size() : kMask + 1);
+      const std::size_t wanted =
+          std::min<std::size_t>(kMask + 1, m_blocks.size() == 1 ? batch.size() : kMask + 1);
       m_blocks.back()->position.reserve(wanted);
       m_blocks.back()->tint.reserve(wanted);
     }

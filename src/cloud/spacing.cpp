@@ -68,7 +68,8 @@ std::vector<WeightedSpacing> spacingsOf(const CloudNode& node, const OctreeNodeL
 
 /// Reorders its argument.
 double weightedMedian(std::vector<WeightedSpacing>& samples) {
-  std::sort(samples.begin(), samples.end(), [](const auto& a, const auto& b) { return a.spacing < b.spacing; });
+  std::sort(samples.begin(), samples.end(),
+            [](const auto& a, const auto& b) { return a.spacing < b.spacing; });
   double total = 0;
   for (const auto& sample : samples) total += sample.weight;
   double below = 0;

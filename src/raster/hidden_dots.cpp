@@ -14,7 +14,7 @@ namespace alidade {
 
 namespace {
 
-constexpr int kLevels = 6;             ///< cells of 2 to 64 pixels
+constexpr int kLevels = 6;               ///< cells of 2 to 64 pixels
 constexpr int kBandRows = 1 << kLevels;  ///< whole cells of every level
 /// How much nearer a wall must be, as a part of the depth: above the noise and slope within a cell.
 constexpr float kGap = 0.01f;
@@ -55,9 +55,10 @@ class WallPyramid {
       for (std::size_t band = first; band < last; ++band) gather(dots, static_cast<int>(band) * kBandRows);
     });
     for (int k = kLevels; k >= 1; --k) {
-      parallelFor(static_cast<std::size_t>(cells(m_height, k)), 16, [&](std::size_t first, std::size_t last, int) {
-        for (std::size_t y = first; y < last; ++y) wallRow(k, static_cast<int>(y));
-      });
+      parallelFor(static_cast<std::size_t>(cells(m_height, k)), 16,
+                  [&](std::size_t first, std::size_t last, int) {
+                    for (std::size_t y = first; y < last; ++y) wallRow(k, static_cast<int>(y));
+                  });
     }
   }
 
@@ -91,7 +92,8 @@ class WallPyramid {
       const float a = std::min(here[x - 1], here[x + 1]), b = std::min(above[x], below[x]);
       const float c = std::min(above[x - 1], below[x + 1]), d = std::min(above[x + 1], below[x - 1]);
       // The third largest of four.
-      const float third = std::max(std::min(std::max(a, b), std::min(c, d)), std::min(std::min(a, b), std::max(c, d)));
+      const float third =
+          std::max(std::min(std::max(a, b), std::min(c, d)), std::min(std::min(a, b), std::max(c, d)));
       wall[x] = coarser ? std::max(third, coarser[x >> 1]) : third;
     }
   }

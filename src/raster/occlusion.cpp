@@ -16,7 +16,8 @@ namespace alidade {
 namespace {
 
 /// The nearest dot a pixel, with its surface's spacing in pixels.
-DotImage drawDots(const std::vector<SplatLayer>& layers, const Camera& camera, const RigidTransform& cameraFromWorld) {
+DotImage drawDots(const std::vector<SplatLayer>& layers, const Camera& camera,
+                  const RigidTransform& cameraFromWorld) {
   SplatOptions options;
   options.maximumSizePx = 1.0;
   const SplatView base = baseView(camera, options);

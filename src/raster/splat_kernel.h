@@ -51,7 +51,8 @@ struct SplatTarget {
 struct SplatKernel {
   const char* name;
   /// `points` are DisplayPoints: x, y, z, rgb565, 16 bits each.
-  void (*draw)(const SplatView& view, const std::uint16_t* points, std::uint32_t count, const SplatTarget& target);
+  void (*draw)(const SplatView& view, const std::uint16_t* points, std::uint32_t count,
+               const SplatTarget& target);
 };
 
 extern const SplatKernel kScalarSplatKernel;

@@ -33,7 +33,7 @@ constexpr Words kIota = {0, 1, 2, 3};
 
 struct Projected {
   Floats u, v, z;
-  Ints valid;    ///< all ones where the lens holds and z > 0
+  Ints valid;  ///< all ones where the lens holds and z > 0
   Words colour;
 };
 
@@ -77,9 +77,12 @@ ALIDADE_LENS_INLINE Projected project(const SplatView& view, const std::uint16_t
 
 ALIDADE_LENS_INLINE Words payloadOf(const SplatTarget& target, std::uint32_t place, const Words& colour) {
   switch (target.payload) {
-    case SplatPayload::Index: return kIota + (target.payloadBase + place);
-    case SplatPayload::Colour: return colour;
-    default: return (kIota & 0u) + target.payloadBase;
+    case SplatPayload::Index:
+      return kIota + (target.payloadBase + place);
+    case SplatPayload::Colour:
+      return colour;
+    default:
+      return (kIota & 0u) + target.payloadBase;
   }
 }
 
@@ -92,7 +95,8 @@ ALIDADE_LENS_INLINE void put(Pixel* pixel, Pixel value) {
 }
 
 template <bool packed>
-ALIDADE_LENS_INLINE void put(const SplatTarget& target, std::size_t at, std::uint32_t depth, std::uint32_t payload) {
+ALIDADE_LENS_INLINE void put(const SplatTarget& target, std::size_t at, std::uint32_t depth,
+                             std::uint32_t payload) {
   if constexpr (packed) {
     put(target.packed + at, static_cast<std::uint64_t>(depth) << 32 | payload);
   } else {
@@ -128,8 +132,8 @@ ALIDADE_LENS_INLINE void drawPixels(const SplatView& view, const Projected& p, c
 
 /// The pixels whose centres lie within `size` of the point: a square, or a disc within it.
 template <bool packed>
-void drawFootprint(const SplatView& view, float u, float v, float size, std::uint32_t depth, std::uint32_t payload,
-                   const SplatTarget& target) {
+void drawFootprint(const SplatView& view, float u, float v, float size, std::uint32_t depth,
+                   std::uint32_t payload, const SplatTarget& target) {
   const float half = 0.5f * size;
   const int left = static_cast<int>(std::floor(u - half)) + 1, right = static_cast<int>(std::floor(u + half));
   const int top = static_cast<int>(std::floor(v - half)) + 1, bottom = static_cast<int>(std::floor(v + half));
@@ -155,8 +159,8 @@ ALIDADE_LENS_INLINE void drawFootprints(const SplatView& view, const Projected& 
   const Floats atMost = wanted < view.largest ? wanted : (zero + view.largest);
   const Floats size = atMost > view.smallest ? atMost : (zero + view.smallest);
   const Floats half = 0.5f * size;
-  const Ints reaches = p.valid & (p.u + half > -0.5f) & (p.u - half < view.width - 0.5f) & (p.v + half > -0.5f) &
-                       (p.v - half < view.height - 0.5f);
+  const Ints reaches = p.valid & (p.u + half > -0.5f) & (p.u - half < view.width - 0.5f) &
+                       (p.v + half > -0.5f) & (p.v - half < view.height - 0.5f);
   const Words payload = payloadOf(target, place, p.colour);
   const Words depth = reinterpret_cast<Words>(p.z);
   for (int i = 0; i < kLanes; ++i) {
@@ -165,7 +169,8 @@ ALIDADE_LENS_INLINE void drawFootprints(const SplatView& view, const Projected& 
 }
 
 template <LensKind kind, bool packed, bool onePixel>
-void drawRun(const SplatView& view, const std::uint16_t* points, std::uint32_t count, const SplatTarget& target) {
+void drawRun(const SplatView& view, const std::uint16_t* points, std::uint32_t count,
+             const SplatTarget& target) {
   const auto drawLanes = [&](const Projected& p, std::uint32_t place) __attribute__((always_inline)) {
     if constexpr (onePixel) {
       drawPixels<packed>(view, p, target, place);
@@ -187,7 +192,8 @@ void drawRun(const SplatView& view, const std::uint16_t* points, std::uint32_t c
 }
 
 template <LensKind kind>
-void drawKind(const SplatView& view, const std::uint16_t* points, std::uint32_t count, const SplatTarget& target) {
+void drawKind(const SplatView& view, const std::uint16_t* points, std::uint32_t count,
+              const SplatTarget& target) {
   if (target.payload == SplatPayload::None) {
     (view.onePixel ? drawRun<kind, false, true> : drawRun<kind, false, false>)(view, points, count, target);
   } else {
@@ -195,13 +201,19 @@ void drawKind(const SplatView& view, const std::uint16_t* points, std::uint32_t 
   }
 }
 
-void draw(const SplatView& view, const std::uint16_t* points, std::uint32_t count, const SplatTarget& target) {
+void draw(const SplatView& view, const std::uint16_t* points, std::uint32_t count,
+          const SplatTarget& target) {
   switch (view.lens.kind) {
-    case LensKind::None: return drawKind<LensKind::None>(view, points, count, target);
-    case LensKind::Radial: return drawKind<LensKind::Radial>(view, points, count, target);
-    case LensKind::Brown: return drawKind<LensKind::Brown>(view, points, count, target);
-    case LensKind::Full: return drawKind<LensKind::Full>(view, points, count, target);
-    case LensKind::Fisheye: return drawKind<LensKind::Fisheye>(view, points, count, target);
+    case LensKind::None:
+      return drawKind<LensKind::None>(view, points, count, target);
+    case LensKind::Radial:
+      return drawKind<LensKind::Radial>(view, points, count, target);
+    case LensKind::Brown:
+      return drawKind<LensKind::Brown>(view, points, count, target);
+    case LensKind::Full:
+      return drawKind<LensKind::Full>(view, points, count, target);
+    case LensKind::Fisheye:
+      return drawKind<LensKind::Fisheye>(view, points, count, target);
   }
 }
 

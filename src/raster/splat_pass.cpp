@@ -32,7 +32,8 @@ class ScratchPool {
   void* take(std::size_t bytes) {
     {
       std::lock_guard lock(m_mutex);
-      const auto found = std::find_if(m_free.begin(), m_free.end(), [&](const Block& b) { return b.bytes == bytes; });
+      const auto found =
+          std::find_if(m_free.begin(), m_free.end(), [&](const Block& b) { return b.bytes == bytes; });
       if (found != m_free.end()) {
         void* data = found->data;
         m_free.erase(found);
@@ -74,7 +75,8 @@ struct Task {
 std::vector<Task> tasksOf(std::span<const SplatRun> runs) {
   std::vector<Task> tasks;
   for (std::uint32_t r = 0; r < runs.size(); ++r) {
-    for (std::uint32_t first = 0; first < runs[r].count; first += std::min(kPointsPerTask, runs[r].count - first)) {
+    for (std::uint32_t first = 0; first < runs[r].count;
+         first += std::min(kPointsPerTask, runs[r].count - first)) {
       tasks.push_back({r, first, std::min(kPointsPerTask, runs[r].count - first)});
     }
   }
@@ -111,7 +113,8 @@ void drawPlanes(std::span<const SplatRun> runs, int width, int height, SplatPayl
   for (const auto& block : scratch) {
     if (block) planes.planes.push_back(static_cast<const Pixel*>(block->data()));
   }
-  parallelFor(pixels, kPixelsPerBand, [&](std::size_t first, std::size_t last, int) { merge(planes, first, last); });
+  parallelFor(pixels, kPixelsPerBand,
+              [&](std::size_t first, std::size_t last, int) { merge(planes, first, last); });
 }
 
 bool inDomain(const void* camera, float x, float y) {
@@ -179,8 +182,10 @@ SplatView baseView(const Camera& camera, const SplatOptions& options) {
   view.width = camera.width();
   view.height = camera.height();
   view.round = options.round;
-  view.smallest = static_cast<float>(std::max(1.0, options.fixedSize ? options.pointSize : options.minimumSizePx));
-  view.largest = static_cast<float>(std::max<double>(view.smallest, options.fixedSize ? 1.0 : options.maximumSizePx));
+  view.smallest =
+      static_cast<float>(std::max(1.0, options.fixedSize ? options.pointSize : options.minimumSizePx));
+  view.largest =
+      static_cast<float>(std::max<double>(view.smallest, options.fixedSize ? 1.0 : options.maximumSizePx));
   return view;
 }
 
@@ -210,9 +215,10 @@ SplatRun makeRun(const PointStore& store, const SelectedRange& range, const Rigi
   return run;
 }
 
-void drawRuns(std::span<const SplatRun> runs, int width, int height, SplatPayload payload,
-              const std::function<void(const SplatPlanes<std::uint32_t>&, std::size_t, std::size_t)>& mergeDepth,
-              const std::function<void(const SplatPlanes<std::uint64_t>&, std::size_t, std::size_t)>& mergePacked) {
+void drawRuns(
+    std::span<const SplatRun> runs, int width, int height, SplatPayload payload,
+    const std::function<void(const SplatPlanes<std::uint32_t>&, std::size_t, std::size_t)>& mergeDepth,
+    const std::function<void(const SplatPlanes<std::uint64_t>&, std::size_t, std::size_t)>& mergePacked) {
   if (payload == SplatPayload::None) {
     drawPlanes<std::uint32_t>(runs, width, height, payload, mergeDepth);
   } else {

@@ -64,8 +64,9 @@ SplatRun makeRun(const PointStore& store, const SelectedRange& range, const Rigi
 /// Draws the runs on all cores, one private plane a thread, then hands the planes to `merge` for
 /// bands of pixels [first, last), on all cores too. payload None draws 32-bit pixels and calls the
 /// first; anything else 64-bit ones and the second.
-void drawRuns(std::span<const SplatRun> runs, int width, int height, SplatPayload payload,
-              const std::function<void(const SplatPlanes<std::uint32_t>&, std::size_t, std::size_t)>& mergeDepth,
-              const std::function<void(const SplatPlanes<std::uint64_t>&, std::size_t, std::size_t)>& mergePacked);
+void drawRuns(
+    std::span<const SplatRun> runs, int width, int height, SplatPayload payload,
+    const std::function<void(const SplatPlanes<std::uint32_t>&, std::size_t, std::size_t)>& mergeDepth,
+    const std::function<void(const SplatPlanes<std::uint64_t>&, std::size_t, std::size_t)>& mergePacked);
 
 }  // namespace alidade

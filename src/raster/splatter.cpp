@@ -60,8 +60,9 @@ class GroupPoints {
   std::vector<std::span<const DisplayPoint>> m_points;
 };
 
-std::vector<SplatRun> runsOf(const std::vector<SplatLayer>& layers, const LayerGroup& group, const Camera& camera,
-                             const RigidTransform& cameraFromWorld, const SplatOptions& options) {
+std::vector<SplatRun> runsOf(const std::vector<SplatLayer>& layers, const LayerGroup& group,
+                             const Camera& camera, const RigidTransform& cameraFromWorld,
+                             const SplatOptions& options) {
   std::vector<SplatRun> runs;
   const SplatView base = baseView(camera, options);
   std::uint64_t before = 0;
@@ -90,7 +91,8 @@ void splatGroup(const std::vector<SplatLayer>& layers, const LayerGroup& group, 
       if (z < depth[i]) depth[i] = z;
     }
   };
-  const auto mergePacked = [&](const SplatPlanes<std::uint64_t>& planes, std::size_t first, std::size_t last) {
+  const auto mergePacked = [&](const SplatPlanes<std::uint64_t>& planes, std::size_t first,
+                               std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       const std::uint64_t pixel = planes.nearest(i);
       const float z = std::bit_cast<float>(static_cast<std::uint32_t>(pixel >> 32));

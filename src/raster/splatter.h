@@ -22,13 +22,13 @@ struct SplatLayer {
 };
 
 struct SplatOptions {
-  bool colour = false;         ///< fill SplatImages::colour
-  bool ids = false;            ///< fill SplatImages::point
-  double pointSize = 1.0;      ///< user's factor on the automatic footprint
+  bool colour = false;     ///< fill SplatImages::colour
+  bool ids = false;        ///< fill SplatImages::point
+  double pointSize = 1.0;  ///< user's factor on the automatic footprint
   double minimumSizePx = 1.0;
   double maximumSizePx = 16.0;
   bool round = false;
-  bool fixedSize = false;      ///< Gantner (2018): pointSize is the size in pixels for every point
+  bool fixedSize = false;  ///< Gantner (2018): pointSize is the size in pixels for every point
 };
 
 /// What the points give for one camera; all of the camera's size.

@@ -95,11 +95,12 @@ class Filler {
     m_filled = Image<float>(m_width, m_height, 0.0f);
     for (int k = 1; k <= kLevels; ++k) {
       if (k > 1) moments = coarser(moments, k);
-      parallelFor(static_cast<std::size_t>(moments.height()), 4, [&](std::size_t first, std::size_t last, int) {
-        for (std::size_t y = first; y < last; ++y) {
-          for (int x = 0; x < moments.width(); ++x) fillCell(moments, k, x, static_cast<int>(y));
-        }
-      });
+      parallelFor(static_cast<std::size_t>(moments.height()), 4,
+                  [&](std::size_t first, std::size_t last, int) {
+                    for (std::size_t y = first; y < last; ++y) {
+                      for (int x = 0; x < moments.width(); ++x) fillCell(moments, k, x, static_cast<int>(y));
+                    }
+                  });
     }
     parallelFor(m_filled.size(), 1 << 16, [&](std::size_t first, std::size_t last, int) {
       float* w = m_dots.inverseDepth.data();
@@ -112,31 +113,36 @@ class Filler {
 
   MomentImage finest() const {
     MomentImage moments(cells(m_width, 1), cells(m_height, 1));
-    parallelFor(static_cast<std::size_t>(moments.height()), 16, [&](std::size_t first, std::size_t last, int) {
-      for (auto y = static_cast<int>(2 * first); y < std::min(m_height, static_cast<int>(2 * last)); ++y) {
-        const float* w = m_dots.inverseDepth.row(y);
-        const float* spacing = m_dots.spacingPx.row(y);
-        Moments* row = moments.row(y >> 1);
-        for (int x = 0; x < m_width; ++x) {
-          if (w[x] <= 0.0f) continue;
-          const float level = spacing[x] > 1.0f ? std::log2(spacing[x]) + 1.0f : 1.0f;
-          row[x >> 1].addDot((x & 1) - 0.5f, (y & 1) - 0.5f, w[x], level);
-        }
-      }
-    });
+    parallelFor(static_cast<std::size_t>(moments.height()), 16,
+                [&](std::size_t first, std::size_t last, int) {
+                  for (auto y = static_cast<int>(2 * first);
+                       y < std::min(m_height, static_cast<int>(2 * last)); ++y) {
+                    const float* w = m_dots.inverseDepth.row(y);
+                    const float* spacing = m_dots.spacingPx.row(y);
+                    Moments* row = moments.row(y >> 1);
+                    for (int x = 0; x < m_width; ++x) {
+                      if (w[x] <= 0.0f) continue;
+                      const float level = spacing[x] > 1.0f ? std::log2(spacing[x]) + 1.0f : 1.0f;
+                      row[x >> 1].addDot((x & 1) - 0.5f, (y & 1) - 0.5f, w[x], level);
+                    }
+                  }
+                });
     return moments;
   }
 
   MomentImage coarser(const MomentImage& fine, int k) const {
     MomentImage moments(cells(m_width, k), cells(m_height, k));
     const float quarter = static_cast<float>(1 << k) / 4.0f;
-    parallelFor(static_cast<std::size_t>(moments.height()), 16, [&](std::size_t first, std::size_t last, int) {
-      for (auto y = static_cast<int>(2 * first); y < std::min(fine.height(), static_cast<int>(2 * last)); ++y) {
-        for (int x = 0; x < fine.width(); ++x) {
-          moments.at(x >> 1, y >> 1).add(fine.at(x, y), x & 1 ? quarter : -quarter, y & 1 ? quarter : -quarter);
-        }
-      }
-    });
+    parallelFor(static_cast<std::size_t>(moments.height()), 16,
+                [&](std::size_t first, std::size_t last, int) {
+                  for (auto y = static_cast<int>(2 * first);
+                       y < std::min(fine.height(), static_cast<int>(2 * last)); ++y) {
+                    for (int x = 0; x < fine.width(); ++x) {
+                      moments.at(x >> 1, y >> 1)
+                          .add(fine.at(x, y), x & 1 ? quarter : -quarter, y & 1 ? quarter : -quarter);
+                    }
+                  }
+                });
     return moments;
   }
 

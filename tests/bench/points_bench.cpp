@@ -45,8 +45,8 @@ std::shared_ptr<const PointStore> siteOf(std::size_t count) {
 
 /// 1080p with full five-coefficient distortion.
 Camera hdCamera() {
-  return Camera(*Intrinsics::fromParameters(CameraModel::OpenCv5, 1920, 1080,
-                                            {1150, 1150, 959.5, 539.5, -0.12, 0.03, 0.0005, -0.0004, -0.002}));
+  return Camera(*Intrinsics::fromParameters(
+      CameraModel::OpenCv5, 1920, 1080, {1150, 1150, 959.5, 539.5, -0.12, 0.03, 0.0005, -0.0004, -0.002}));
 }
 
 /// The whole site in view from above its edge.
@@ -70,12 +70,18 @@ void splatSite(benchmark::State& state, const SplatOptions& options) {
   state.SetLabel(splatKernelName());
 }
 
-void splat_depth_20M(benchmark::State& state) { splatSite(state, {.maximumSizePx = 1.0}); }
-void splat_colour_20M(benchmark::State& state) { splatSite(state, {.colour = true, .maximumSizePx = 1.0}); }
+void splat_depth_20M(benchmark::State& state) {
+  splatSite(state, {.maximumSizePx = 1.0});
+}
+void splat_colour_20M(benchmark::State& state) {
+  splatSite(state, {.colour = true, .maximumSizePx = 1.0});
+}
 void splat_colour_ids_20M(benchmark::State& state) {
   splatSite(state, {.colour = true, .ids = true, .maximumSizePx = 1.0});
 }
-void splat_colour_footprints_20M(benchmark::State& state) { splatSite(state, {.colour = true}); }
+void splat_colour_footprints_20M(benchmark::State& state) {
+  splatSite(state, {.colour = true});
+}
 
 void select_pixels_20M(benchmark::State& state) {
   const auto store = siteOf(20'000'000);
@@ -110,7 +116,8 @@ void occlusion_5M(benchmark::State& state) {
 void build_store_5M(benchmark::State& state) {
   const auto source = siteOf(5'000'000);
   PointBatch batch;
-  for (std::uint64_t i = 0; i < source->pointCount(); ++i) batch.position.push_back(source->sourcePosition(i));
+  for (std::uint64_t i = 0; i < source->pointCount(); ++i)
+    batch.position.push_back(source->sourcePosition(i));
   for (auto _ : state) {
     PointStoreBuilder builder;
     builder.add(batch);

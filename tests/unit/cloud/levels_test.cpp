@@ -56,7 +56,8 @@ std::shared_ptr<const PointStore> storeOf(std::size_t count, std::uint32_t seed,
   PointBatch batch;
   std::mt19937 random(7);
   std::uniform_real_distribution<double> place(0.0, 50.0);
-  for (std::size_t i = 0; i < count; ++i) batch.position.push_back({place(random), place(random), place(random)});
+  for (std::size_t i = 0; i < count; ++i)
+    batch.position.push_back({place(random), place(random), place(random)});
   PointStoreBuilder::Options options;
   options.seed = seed;
   options.dimensions = dimensions;

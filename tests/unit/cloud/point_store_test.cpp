@@ -29,7 +29,8 @@ void expectEverySourcePoint(const PointStore& store, const PointBatch& batch) {
     seen[source] = 1;
     const glm::dvec3 p = store.sourcePosition(i);
     for (int axis = 0; axis < 3; ++axis) {
-      ASSERT_EQ(std::bit_cast<std::uint64_t>(p[axis]), std::bit_cast<std::uint64_t>(batch.position[source][axis]));
+      ASSERT_EQ(std::bit_cast<std::uint64_t>(p[axis]),
+                std::bit_cast<std::uint64_t>(batch.position[source][axis]));
     }
     if (!batch.rgb.empty()) {
       ASSERT_EQ(store.sourceColour(i), batch.rgb[source]);

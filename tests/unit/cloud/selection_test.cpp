@@ -41,7 +41,8 @@ void expectSmoothSlider(const PointStore& store, const Camera& camera, const Rig
       const auto now = counts.find(node);
       ASSERT_TRUE(now != counts.end() && now->second >= count) << "node " << node << " at step " << step;
     }
-    ASSERT_LE(selection.pointCount - countBefore, static_cast<std::uint64_t>(std::ceil(0.005 * total))) << step;
+    ASSERT_LE(selection.pointCount - countBefore, static_cast<std::uint64_t>(std::ceil(0.005 * total)))
+        << step;
     before = counts;
     countBefore = selection.pointCount;
   }
@@ -82,7 +83,8 @@ TEST(Selection, ABudgetStopsTheSliderButNeverTakesPointsAway) {
 }
 
 TEST(Selection, GrowsSmoothlyOnARealRoom) {
-  const PointBatch batch = test::lasPositions(std::string(ALIDADE_SHARED_DATA_DIR) + "/indoor_video/cloud_quarter.las");
+  const PointBatch batch =
+      test::lasPositions(std::string(ALIDADE_SHARED_DATA_DIR) + "/indoor_video/cloud_quarter.las");
   if (batch.size() == 0) GTEST_SKIP() << "no indoor_video/cloud_quarter.las in " << ALIDADE_SHARED_DATA_DIR;
   const auto store = storeFrom(batch);
   const glm::dvec3 middle = store->bounds().centre();
@@ -111,7 +113,8 @@ TEST(Selection, ReachesTheWantedSpacingOnScreen) {
   for (int i = 0; i < 1'000'000; ++i) batch.position.push_back({side(random), 10.0, side(random)});
   const auto store = storeFrom(batch);
   const Camera camera = pinhole(400, 400, 700);
-  const Selection selection = select(*store, camera, RigidTransform::cameraLookingAt({0, 0, 0}, {0, 10, 0}), {});
+  const Selection selection =
+      select(*store, camera, RigidTransform::cameraLookingAt({0, 0, 0}, {0, 10, 0}), {});
   const double pixels = 140.0 * 140.0;
   EXPECT_NEAR(selection.pointCount * 0.75 * 0.75 / pixels, 1.0, 0.15);
   for (const SelectedRange& range : selection.ranges) EXPECT_NEAR(range.spacing * 70, 0.75, 0.12);
@@ -134,8 +137,8 @@ TEST(Selection, FollowsTheLawOfZhang) {
 /// selection leaves out no pixel can show.
 TEST(Selection, LosesNothingThatTheDistortedLensSees) {
   const auto store = storeFrom(unevenRoom(200'000), 500);
-  const Camera barrel(*Intrinsics::fromParameters(CameraModel::OpenCv5, 640, 480,
-                                                  {300, 300, 319.5, 239.5, -0.25, 0.05, 0.001, -0.001, -0.004}));
+  const Camera barrel(*Intrinsics::fromParameters(
+      CameraModel::OpenCv5, 640, 480, {300, 300, 319.5, 239.5, -0.25, 0.05, 0.001, -0.001, -0.004}));
   const Camera fisheye(*Intrinsics::fromParameters(CameraModel::OpenCvFisheye, 640, 480,
                                                    {250, 250, 319.5, 239.5, -0.01, 0.003, 0, 0}));
   for (const Camera& camera : {barrel, fisheye, pinhole(640, 480, 500)}) {

@@ -16,7 +16,8 @@
 namespace alidade::test {
 
 /// A room's floor and walls, sampled ever denser towards one corner as a scanner there does.
-inline PointBatch unevenRoom(std::size_t count, const glm::dvec3& offset = glm::dvec3(0), std::uint32_t seed = 5) {
+inline PointBatch unevenRoom(std::size_t count, const glm::dvec3& offset = glm::dvec3(0),
+                             std::uint32_t seed = 5) {
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
   PointBatch batch;
@@ -33,7 +34,8 @@ inline PointBatch unevenRoom(std::size_t count, const glm::dvec3& offset = glm::
   return batch;
 }
 
-inline std::shared_ptr<const PointStore> storeFrom(const PointBatch& batch, std::uint32_t leafPoints = 20000) {
+inline std::shared_ptr<const PointStore> storeFrom(const PointBatch& batch,
+                                                   std::uint32_t leafPoints = 20000) {
   PointStoreBuilder::Options options;
   options.leafPoints = leafPoints;
   PointStoreBuilder builder(options);
@@ -53,7 +55,9 @@ inline PointBatch lasPositions(const std::string& path) {
   const std::vector<char> bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
   PointBatch batch;
   if (bytes.size() < 227) return batch;
-  const auto at = [&bytes](std::size_t offset, auto& value) { std::memcpy(&value, &bytes[offset], sizeof value); };
+  const auto at = [&bytes](std::size_t offset, auto& value) {
+    std::memcpy(&value, &bytes[offset], sizeof value);
+  };
   std::uint32_t first = 0, count = 0;
   std::uint16_t length = 0;
   glm::dvec3 scale, offset;

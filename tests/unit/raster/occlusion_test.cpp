@@ -22,8 +22,9 @@ using test::StreetScene;
 
 Camera streetCamera(int width, int height) {
   const double f = 0.62 * width;
-  return Camera(*Intrinsics::fromParameters(CameraModel::OpenCv5, width, height,
-                                            {f, f, width / 2.0, height / 2.0 - 3, -0.12, 0.03, 0.0004, -0.0003, 0.0}));
+  return Camera(
+      *Intrinsics::fromParameters(CameraModel::OpenCv5, width, height,
+                                  {f, f, width / 2.0, height / 2.0 - 3, -0.12, 0.03, 0.0004, -0.0003, 0.0}));
 }
 
 const RigidTransform kStreetView = RigidTransform::cameraLookingAt({-1.0, 0.5, 1.7}, {12, 1.5, 1.2});
@@ -36,8 +37,9 @@ DepthImage truthOf(const StreetScene& scene, const Camera& camera, const RigidTr
     for (int x = 0; x < truth.width(); ++x) {
       const auto ray = camera.unproject(glm::dvec2(x, y));
       // The ray's z is 1, so the distance in its lengths is the depth.
-      truth.at(x, y) = ray ? static_cast<float>(scene.cast(worldFromCamera.translation, worldFromCamera.rotation * *ray))
-                           : std::numeric_limits<float>::infinity();
+      truth.at(x, y) =
+          ray ? static_cast<float>(scene.cast(worldFromCamera.translation, worldFromCamera.rotation * *ray))
+              : std::numeric_limits<float>::infinity();
     }
   }
   return truth;
@@ -84,11 +86,13 @@ Score scoreOf(const DepthImage& truth, const DepthImage& depth, bool interior) {
       right += isKnown && agrees(truth, x, y, depth.at(x, y));
     }
   }
-  return {100.0 * right / known, 100.0 * right / surface, 100.0 * (1.0 - static_cast<double>(known) / surface)};
+  return {100.0 * right / known, 100.0 * right / surface,
+          100.0 * (1.0 - static_cast<double>(known) / surface)};
 }
 
 /// Four panels for the eye, where ALIDADE_TEST_PICTURES names a folder: dots, occlusion, truth, faults.
-void savePicture(const std::string& name, const DepthImage& truth, const DepthImage& dots, const DepthImage& depth) {
+void savePicture(const std::string& name, const DepthImage& truth, const DepthImage& dots,
+                 const DepthImage& depth) {
   const char* folder = std::getenv("ALIDADE_TEST_PICTURES");
   if (!folder) return;
   const int w = truth.width(), h = truth.height();
@@ -97,18 +101,26 @@ void savePicture(const std::string& name, const DepthImage& truth, const DepthIm
     unsigned char* p = &rgb[(static_cast<std::size_t>(y) * 2 * w + x) * 3];
     p[0] = r, p[1] = g, p[2] = b;
   };
-  const auto gray = [](float z) { return static_cast<unsigned char>(std::isfinite(z) ? 255 / (1 + 0.15f * z) + 20 : 0); };
+  const auto gray = [](float z) {
+    return static_cast<unsigned char>(std::isfinite(z) ? 255 / (1 + 0.15f * z) + 20 : 0);
+  };
   for (int y = 0; y < h; ++y) {
     for (int x = 0; x < w; ++x) {
       const unsigned char d = gray(dots.at(x, y)), o = gray(depth.at(x, y)), t = gray(truth.at(x, y));
       set(x, y, d, d, d);
-      if (std::isnan(depth.at(x, y))) set(x + w, y, 60, 0, 90); else set(x + w, y, o, o, o);
+      if (std::isnan(depth.at(x, y)))
+        set(x + w, y, 60, 0, 90);
+      else
+        set(x + w, y, o, o, o);
       set(x, y + h, t, t, t);
       const bool known = !std::isnan(depth.at(x, y)), right = known && agrees(truth, x, y, depth.at(x, y));
       const unsigned char dim = isInterior(truth, x, y) ? 255 : 110;
-      if (!known) set(x + w, y + h, 0, 0, std::isinf(truth.at(x, y)) ? 40 : dim);
-      else if (right) set(x + w, y + h, 30, 60, 30);
-      else set(x + w, y + h, dim, depth.at(x, y) < truth.at(x, y) ? 0 : dim, 0);
+      if (!known)
+        set(x + w, y + h, 0, 0, std::isinf(truth.at(x, y)) ? 40 : dim);
+      else if (right)
+        set(x + w, y + h, 30, 60, 30);
+      else
+        set(x + w, y + h, dim, depth.at(x, y) < truth.at(x, y) ? 0 : dim, 0);
     }
   }
   std::ofstream file(std::string(folder) + "/" + name + ".ppm", std::ios::binary);
@@ -133,9 +145,10 @@ Score scoreStreet(std::size_t points, int width, int height) {
   const DepthImage dots = splat(layers, camera, kStreetView, {.maximumSizePx = 1.0}).depth;
   savePicture("street_" + std::to_string(points / 1000) + "k", truth, dots, occlusion.depth);
   const Score score = scoreOf(truth, occlusion.depth, true), edges = scoreOf(truth, occlusion.depth, false);
-  std::printf("%8zu points %dx%d: precision %.2f recall %.2f unknown %.2f | within 2 px of edges %.2f %.2f %.2f\n",
-              points, width, height, score.precision, score.recall, score.unknown, edges.precision, edges.recall,
-              edges.unknown);
+  std::printf(
+      "%8zu points %dx%d: precision %.2f recall %.2f unknown %.2f | within 2 px of edges %.2f %.2f %.2f\n",
+      points, width, height, score.precision, score.recall, score.unknown, edges.precision, edges.recall,
+      edges.unknown);
   return score;
 }
 

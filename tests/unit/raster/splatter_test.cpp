@@ -40,15 +40,17 @@ std::vector<NamedCamera> everyLens() {
       {"pinhole", camera(CameraModel::Pinhole, {f, f + 3, cx, cy})},
       {"radial", camera(CameraModel::Radial, {f, cx, cy, -0.12, 0.02})},
       {"brown", camera(CameraModel::OpenCv5, {f, f, cx, cy, -0.31, 0.12, 0.001, -0.002, -0.03})},
-      {"tilted", camera(CameraModel::OpenCv14, {f, f, cx, cy, 0.1, -0.05, 0.001, -0.001, 0.01, 0.12, -0.02, 0.004,
-                                                0.001, -0.0005, 0.0008, 0.0002, 0.01, -0.02})},
-      {"fisheye", camera(CameraModel::OpenCvFisheye, {f * 0.6, f * 0.6, cx, cy, -0.02, 0.004, -0.001, 0.0002})},
+      {"tilted", camera(CameraModel::OpenCv14, {f, f, cx, cy, 0.1, -0.05, 0.001, -0.001, 0.01, 0.12, -0.02,
+                                                0.004, 0.001, -0.0005, 0.0008, 0.0002, 0.01, -0.02})},
+      {"fisheye",
+       camera(CameraModel::OpenCvFisheye, {f * 0.6, f * 0.6, cx, cy, -0.02, 0.004, -0.001, 0.0002})},
   };
 }
 
 const RigidTransform kView = RigidTransform::cameraLookingAt({3, 2, 1.6}, {17, 10, 1.2});
 
-SplatLayer whole(const std::shared_ptr<const PointStore>& store, const Camera& camera, const RigidTransform& pose) {
+SplatLayer whole(const std::shared_ptr<const PointStore>& store, const Camera& camera,
+                 const RigidTransform& pose) {
   return {store, selectAll(*store, camera, pose)};
 }
 
@@ -102,7 +104,8 @@ TEST(Splatter, AgreesWithADoublePrecisionReferenceThroughEveryLens) {
     std::size_t covered = 0, exact = 0;
     for (std::size_t i = 0; i < drawn.depth.size(); ++i) {
       const float z = drawn.depth.data()[i];
-      const float low = expected.depthIfBorderPointsCome.data()[i], high = expected.depthIfBorderPointsGo.data()[i];
+      const float low = expected.depthIfBorderPointsCome.data()[i],
+                  high = expected.depthIfBorderPointsGo.data()[i];
       // Sums of some 20 m in floats: 2 micrometres, and a few roundings of z itself.
       ASSERT_GE(z, low * (1 - 1e-6f) - 2e-6f) << name << " pixel " << i;
       ASSERT_TRUE(z <= high * (1 + 1e-6f) + 2e-6f) << name << " pixel " << i;
@@ -135,7 +138,8 @@ TEST(Splatter, ThreeKernelsGiveOnePicture) {
         const SplatImages fastest = splat(layers, lens, kView, options);
         for (const char* kernel : {"avx2", "scalar"}) {
           const ForcedKernel forced(kernel);
-          expectSame(fastest, splat(layers, lens, kView, options), std::string(name) + " " + splatKernelName());
+          expectSame(fastest, splat(layers, lens, kView, options),
+                     std::string(name) + " " + splatKernelName());
         }
       }
     }
@@ -148,7 +152,8 @@ TEST(Splatter, TenThousandKilometresAwayIsTheSamePicture) {
   const glm::dvec3 far(1e7, -1e7, 1e3);
   const auto here = storeFrom(unevenRoom(200'000)), there = storeFrom(unevenRoom(200'000, far));
   for (const auto& [name, lens] : everyLens()) {
-    const auto farView = RigidTransform::cameraLookingAt(glm::dvec3(3, 2, 1.625) + far, glm::dvec3(17, 10, 1.25) + far);
+    const auto farView =
+        RigidTransform::cameraLookingAt(glm::dvec3(3, 2, 1.625) + far, glm::dvec3(17, 10, 1.25) + far);
     const auto nearView = RigidTransform::cameraLookingAt({3, 2, 1.625}, {17, 10, 1.25});
     const SplatOptions options{.colour = true, .maximumSizePx = 1.0};
     const SplatImages a = splat({whole(here, lens, nearView)}, lens, nearView, options);
@@ -187,7 +192,8 @@ TEST(Splatter, NothingReturnsFromBeyondTheFoldBackRadius) {
 }
 
 TEST(Splatter, IdsNameTheWinnerOverAllLayers) {
-  const auto first = storeFrom(unevenRoom(60'000, {0, 0, 0}, 1)), second = storeFrom(unevenRoom(60'000, {0, 0, 0.5}, 2));
+  const auto first = storeFrom(unevenRoom(60'000, {0, 0, 0}, 1)),
+             second = storeFrom(unevenRoom(60'000, {0, 0, 0.5}, 2));
   const Camera lens = everyLens()[2].camera;
   const SplatImages drawn = splat({whole(first, lens, kView), whole(second, lens, kView)}, lens, kView,
                                   {.colour = true, .ids = true, .maximumSizePx = 1.0});
@@ -250,7 +256,8 @@ TEST(Splatter, FootprintsAreCutAtThePicturesBorder) {
   PointBatch batch;
   std::mt19937 random(4);
   std::uniform_real_distribution<double> side(-3.0, 3.0);
-  for (int i = 0; i < 5000; ++i) batch.position.push_back({side(random), side(random), 2.0 + 0.1 * side(random)});
+  for (int i = 0; i < 5000; ++i)
+    batch.position.push_back({side(random), side(random), 2.0 + 0.1 * side(random)});
   const Camera lens = pinhole(97, 61, 50);
   const auto store = storeFrom(batch);
   for (const bool round : {false, true}) {

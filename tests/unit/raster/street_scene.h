@@ -17,11 +17,11 @@ namespace alidade::test {
 class StreetScene {
  public:
   StreetScene() {
-    addBox({-30, -10, -0.5}, {60, 12, 0});                       // ground
-    addBox({-30, -3.2, 0}, {60, -3, 0.12});                      // kerb
+    addBox({-30, -10, -0.5}, {60, 12, 0});   // ground
+    addBox({-30, -3.2, 0}, {60, -3, 0.12});  // kerb
     addFacade(9.0);
-    addBox({8, -6, 0}, {13, -4, 2.2});                           // van
-    addBox({-30, -10.3, 0}, {60, -10, 7});                       // the other side of the street
+    addBox({8, -6, 0}, {13, -4, 2.2});      // van
+    addBox({-30, -10.3, 0}, {60, -10, 7});  // the other side of the street
     for (int i = 0; i < 9; ++i) addPost({4.0 + 4.5 * i, -2.6}, i % 2 ? 0.05 : 0.03, 3.0);
     for (int i = 0; i < 24; ++i) addPost({2.0 + 0.5 * i, 4.5}, 0.02, 1.0);  // railing
     addBox({2, 4.48, 0.98}, {14, 4.52, 1.03});
@@ -36,7 +36,8 @@ class StreetScene {
   }
 
   /// What a scanner there measures: rays evenly spread in angle with a jitter, `noiseMeters` along the ray.
-  void scan(const glm::dvec3& eye, std::size_t rays, double noiseMeters, std::uint32_t seed, PointBatch& into) const {
+  void scan(const glm::dvec3& eye, std::size_t rays, double noiseMeters, std::uint32_t seed,
+            PointBatch& into) const {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> jitter(-0.5, 0.5);
     std::normal_distribution<double> noise(0.0, noiseMeters);
@@ -65,7 +66,9 @@ class StreetScene {
   };
 
   void addBox(const glm::dvec3& min, const glm::dvec3& max) { m_boxes.push_back({min, max}); }
-  void addPost(const glm::dvec2& centre, double radius, double height) { m_posts.push_back({centre, radius, height}); }
+  void addPost(const glm::dvec2& centre, double radius, double height) {
+    m_posts.push_back({centre, radius, height});
+  }
 
   /// A wall at y with windows 0.25 m deep: the panes, and what of the wall is left around them.
   void addFacade(double y) {
@@ -79,7 +82,8 @@ class StreetScene {
   static double hitBox(const Box& box, const glm::dvec3& eye, const glm::dvec3& direction) {
     double enter = 1e-9, leave = std::numeric_limits<double>::infinity();
     for (int axis = 0; axis < 3; ++axis) {
-      const double a = (box.min[axis] - eye[axis]) / direction[axis], b = (box.max[axis] - eye[axis]) / direction[axis];
+      const double a = (box.min[axis] - eye[axis]) / direction[axis],
+                   b = (box.max[axis] - eye[axis]) / direction[axis];
       enter = std::max(enter, std::min(a, b));
       leave = std::min(leave, std::max(a, b));
     }
@@ -88,7 +92,8 @@ class StreetScene {
 
   static double hitPost(const Post& post, const glm::dvec3& eye, const glm::dvec3& direction) {
     const glm::dvec2 to = glm::dvec2(eye) - post.centre, way(direction);
-    const double a = glm::dot(way, way), b = glm::dot(to, way), c = glm::dot(to, to) - post.radius * post.radius;
+    const double a = glm::dot(way, way), b = glm::dot(to, way),
+                 c = glm::dot(to, to) - post.radius * post.radius;
     const double inside = b * b - a * c;
     if (inside < 0) return std::numeric_limits<double>::infinity();
     const double t = (-b - std::sqrt(inside)) / a;
