@@ -1,0 +1,29 @@
+// SPDX-FileCopyrightText: 2026 the Alidade authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "ui/start.h"
+
+#include <QCoreApplication>
+#include <QSurfaceFormat>
+
+namespace alidade {
+
+void prepareGraphics() {
+  QCoreApplication::setAttribute(Qt::AA_ShareOpenGLContexts);
+  QSurfaceFormat format;
+  format.setRenderableType(QSurfaceFormat::OpenGL);
+  format.setVersion(3, 2);
+  format.setProfile(QSurfaceFormat::CoreProfile);
+  format.setDepthBufferSize(24);
+  format.setStencilBufferSize(8);
+  format.setSamples(0);
+  QSurfaceFormat::setDefaultFormat(format);
+}
+
+void nameApplication() {
+  QCoreApplication::setOrganizationName(QStringLiteral("Alidade"));
+  QCoreApplication::setApplicationName(QStringLiteral("alidade"));
+  QCoreApplication::setApplicationVersion(QStringLiteral(ALIDADE_VERSION));
+}
+
+}  // namespace alidade
