@@ -71,7 +71,9 @@ VkBufferImageCopy wholeImage(const GpuImage::State& image) {
   return region;
 }
 
-bool isUnsigned(GpuFormat format) { return format == GpuFormat::R8Uint || format == GpuFormat::R32Uint; }
+bool isUnsigned(GpuFormat format) {
+  return format == GpuFormat::R8Uint || format == GpuFormat::R32Uint;
+}
 
 VkRenderingAttachmentInfo attachmentOf(const GpuPassTarget& target, VkImageLayout layout) {
   const GpuImage::State& image = target.image.state();
@@ -110,14 +112,17 @@ void GpuCommands::readBack(const GpuImage& from, const GpuBuffer& to) {
   handToHost(m_state.commands, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT);
 }
 
-void GpuCommands::toSampled(const GpuImage& image) { moveImage(m_state.commands, image.state(), kSampled); }
+void GpuCommands::toSampled(const GpuImage& image) {
+  moveImage(m_state.commands, image.state(), kSampled);
+}
 
 void GpuCommands::beginPass(const GpuPass& pass) {
   std::vector<VkRenderingAttachmentInfo> colours;
   VkExtent2D extent{0, 0};
   const auto enter = [&](const GpuPassTarget& target, const ImageUse& use) {
     moveImage(m_state.commands, target.image.state(), use, target.clear.has_value() || target.isOverwritten);
-    extent = {static_cast<std::uint32_t>(target.image.width()), static_cast<std::uint32_t>(target.image.height())};
+    extent = {static_cast<std::uint32_t>(target.image.width()),
+              static_cast<std::uint32_t>(target.image.height())};
     return attachmentOf(target, use.layout);
   };
   for (const GpuPassTarget& target : pass.colours) colours.push_back(enter(target, kColourTarget));
@@ -138,14 +143,16 @@ void GpuCommands::beginPass(const GpuPass& pass) {
   vkCmdSetScissor(m_state.commands, 0, 1, &scissor);
 }
 
-void GpuCommands::endPass() { vkCmdEndRendering(m_state.commands); }
+void GpuCommands::endPass() {
+  vkCmdEndRendering(m_state.commands);
+}
 
 void GpuCommands::bind(const GpuPipeline& pipeline, const GpuBindings& bindings) {
   const VkPipelineBindPoint point =
       pipeline.state().isCompute() ? VK_PIPELINE_BIND_POINT_COMPUTE : VK_PIPELINE_BIND_POINT_GRAPHICS;
   vkCmdBindPipeline(m_state.commands, point, pipeline.state().pipeline.get());
-  vkCmdBindDescriptorSets(m_state.commands, point, pipeline.state().layout.get(), 0, 1, &bindings.state().set, 0,
-                          nullptr);
+  vkCmdBindDescriptorSets(m_state.commands, point, pipeline.state().layout.get(), 0, 1, &bindings.state().set,
+                          0, nullptr);
 }
 
 void GpuCommands::bindVertices(const GpuBuffer& vertices) {
@@ -158,7 +165,9 @@ void GpuCommands::bindIndices(const GpuBuffer& indices) {
   vkCmdBindIndexBuffer(m_state.commands, indices.state().buffer.get(), 0, VK_INDEX_TYPE_UINT32);
 }
 
-void GpuCommands::draw(std::uint32_t vertexCount) { vkCmdDraw(m_state.commands, vertexCount, 1, 0, 0); }
+void GpuCommands::draw(std::uint32_t vertexCount) {
+  vkCmdDraw(m_state.commands, vertexCount, 1, 0, 0);
+}
 
 void GpuCommands::drawIndexed(std::uint32_t indexCount) {
   vkCmdDrawIndexed(m_state.commands, indexCount, 1, 0, 0, 0);

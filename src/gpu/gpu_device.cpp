@@ -20,26 +20,40 @@ constexpr const char* kValidationLayer = "VK_LAYER_KHRONOS_validation";
 
 const char* resultName(VkResult result) {
   switch (result) {
-    case VK_ERROR_OUT_OF_HOST_MEMORY: return "VK_ERROR_OUT_OF_HOST_MEMORY";
-    case VK_ERROR_OUT_OF_DEVICE_MEMORY: return "VK_ERROR_OUT_OF_DEVICE_MEMORY";
-    case VK_ERROR_INITIALIZATION_FAILED: return "VK_ERROR_INITIALIZATION_FAILED";
-    case VK_ERROR_DEVICE_LOST: return "VK_ERROR_DEVICE_LOST";
-    case VK_ERROR_MEMORY_MAP_FAILED: return "VK_ERROR_MEMORY_MAP_FAILED";
-    case VK_ERROR_LAYER_NOT_PRESENT: return "VK_ERROR_LAYER_NOT_PRESENT";
-    case VK_ERROR_EXTENSION_NOT_PRESENT: return "VK_ERROR_EXTENSION_NOT_PRESENT";
-    case VK_ERROR_FEATURE_NOT_PRESENT: return "VK_ERROR_FEATURE_NOT_PRESENT";
-    case VK_ERROR_INCOMPATIBLE_DRIVER: return "VK_ERROR_INCOMPATIBLE_DRIVER";
-    case VK_TIMEOUT: return "VK_TIMEOUT";
-    default: return nullptr;
+    case VK_ERROR_OUT_OF_HOST_MEMORY:
+      return "VK_ERROR_OUT_OF_HOST_MEMORY";
+    case VK_ERROR_OUT_OF_DEVICE_MEMORY:
+      return "VK_ERROR_OUT_OF_DEVICE_MEMORY";
+    case VK_ERROR_INITIALIZATION_FAILED:
+      return "VK_ERROR_INITIALIZATION_FAILED";
+    case VK_ERROR_DEVICE_LOST:
+      return "VK_ERROR_DEVICE_LOST";
+    case VK_ERROR_MEMORY_MAP_FAILED:
+      return "VK_ERROR_MEMORY_MAP_FAILED";
+    case VK_ERROR_LAYER_NOT_PRESENT:
+      return "VK_ERROR_LAYER_NOT_PRESENT";
+    case VK_ERROR_EXTENSION_NOT_PRESENT:
+      return "VK_ERROR_EXTENSION_NOT_PRESENT";
+    case VK_ERROR_FEATURE_NOT_PRESENT:
+      return "VK_ERROR_FEATURE_NOT_PRESENT";
+    case VK_ERROR_INCOMPATIBLE_DRIVER:
+      return "VK_ERROR_INCOMPATIBLE_DRIVER";
+    case VK_TIMEOUT:
+      return "VK_TIMEOUT";
+    default:
+      return nullptr;
   }
 }
 
 const char* adviceFor(VkResult result) {
   switch (result) {
     case VK_ERROR_OUT_OF_HOST_MEMORY:
-    case VK_ERROR_OUT_OF_DEVICE_MEMORY: return "Choose a smaller picture or show fewer elements";
-    case VK_ERROR_DEVICE_LOST: return "Restart the program; if it returns, set ALIDADE_VULKAN_DEVICE=llvmpipe";
-    default: return "Install a Vulkan 1.3 driver; mesa-vulkan-drivers draws without a GPU";
+    case VK_ERROR_OUT_OF_DEVICE_MEMORY:
+      return "Choose a smaller picture or show fewer elements";
+    case VK_ERROR_DEVICE_LOST:
+      return "Restart the program; if it returns, set ALIDADE_VULKAN_DEVICE=llvmpipe";
+    default:
+      return "Install a Vulkan 1.3 driver; mesa-vulkan-drivers draws without a GPU";
   }
 }
 
@@ -58,10 +72,12 @@ VKAPI_ATTR VkBool32 VKAPI_CALL onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT 
 }
 
 VkDebugUtilsMessengerCreateInfoEXT messengerInfo(VulkanRoot& root) {
-  auto info = stamped<VkDebugUtilsMessengerCreateInfoEXT>(VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT);
+  auto info =
+      stamped<VkDebugUtilsMessengerCreateInfoEXT>(VK_STRUCTURE_TYPE_DEBUG_UTILS_MESSENGER_CREATE_INFO_EXT);
   info.messageSeverity =
       VK_DEBUG_UTILS_MESSAGE_SEVERITY_WARNING_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT;
-  info.messageType = VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
+  info.messageType =
+      VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT | VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT;
   info.pfnUserCallback = onMessage;
   info.pUserData = &root;
   return info;
@@ -96,8 +112,10 @@ Result<void> makeInstance(VulkanRoot& root, bool validated) {
   if (!validated) return {};
   const auto create = reinterpret_cast<PFN_vkCreateDebugUtilsMessengerEXT>(
       vkGetInstanceProcAddr(root.instance, "vkCreateDebugUtilsMessengerEXT"));
-  if (!create) return fail("The validation layer has no messenger", kValidationLayer, "Unset ALIDADE_VULKAN_VALIDATION");
-  if (const VkResult result = create(root.instance, &messenger, nullptr, &root.messenger); result != VK_SUCCESS)
+  if (!create)
+    return fail("The validation layer has no messenger", kValidationLayer, "Unset ALIDADE_VULKAN_VALIDATION");
+  if (const VkResult result = create(root.instance, &messenger, nullptr, &root.messenger);
+      result != VK_SUCCESS)
     return vulkanFailure("vkCreateDebugUtilsMessengerEXT", result);
   return {};
 }
@@ -111,11 +129,16 @@ struct Candidate {
 
 int rankOf(VkPhysicalDeviceType type) {
   switch (type) {
-    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU: return 0;
-    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU: return 1;
-    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU: return 2;
-    case VK_PHYSICAL_DEVICE_TYPE_CPU: return 3;
-    default: return 4;
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+      return 0;
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
+      return 1;
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
+      return 2;
+    case VK_PHYSICAL_DEVICE_TYPE_CPU:
+      return 3;
+    default:
+      return 4;
   }
 }
 
@@ -126,7 +149,8 @@ Candidate examine(VkPhysicalDevice device) {
     candidate.missing = "Vulkan 1.3";
     return candidate;
   }
-  auto features13 = stamped<VkPhysicalDeviceVulkan13Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES);
+  auto features13 =
+      stamped<VkPhysicalDeviceVulkan13Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES);
   auto features = stamped<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2);
   features.pNext = &features13;
   vkGetPhysicalDeviceFeatures2(device, &features);
@@ -173,14 +197,17 @@ Result<Candidate> pickDevice(VkInstance instance) {
     const std::string lack = candidate.missing.empty() ? "" : " (lacks " + candidate.missing + ")";
     found += (found.empty() ? "" : ", ") + std::to_string(i) + ": " + candidate.properties.deviceName + lack;
     if (!candidate.missing.empty() || !isWanted(wanted, i, candidate.properties.deviceName)) continue;
-    if (!best || rankOf(candidate.properties.deviceType) < rankOf(best->properties.deviceType)) best = candidate;
+    if (!best || rankOf(candidate.properties.deviceType) < rankOf(best->properties.deviceType))
+      best = candidate;
   }
   if (best) return *best;
   if (devices.empty())
     return fail("No Vulkan driver is installed", {}, "Install one; mesa-vulkan-drivers draws without a GPU");
   if (!wanted.empty())
-    return fail("No usable Vulkan device matches \"" + wanted + "\"", found, "Change or unset ALIDADE_VULKAN_DEVICE");
-  return fail("No Vulkan device can draw the overlay", found, "Update the driver, or install mesa-vulkan-drivers");
+    return fail("No usable Vulkan device matches \"" + wanted + "\"", found,
+                "Change or unset ALIDADE_VULKAN_DEVICE");
+  return fail("No Vulkan device can draw the overlay", found,
+              "Update the driver, or install mesa-vulkan-drivers");
 }
 
 Result<void> makeDevice(GpuDevice::Core& core) {
@@ -189,7 +216,8 @@ Result<void> makeDevice(GpuDevice::Core& core) {
   queue.queueFamilyIndex = core.queueFamily;
   queue.queueCount = 1;
   queue.pQueuePriorities = &priority;
-  auto features13 = stamped<VkPhysicalDeviceVulkan13Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES);
+  auto features13 =
+      stamped<VkPhysicalDeviceVulkan13Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_3_FEATURES);
   features13.dynamicRendering = VK_TRUE;
   features13.synchronization2 = VK_TRUE;
   features13.maintenance4 = VK_TRUE;  // glslc writes LocalSizeId; every 1.3 device has it
@@ -200,7 +228,8 @@ Result<void> makeDevice(GpuDevice::Core& core) {
   info.pNext = &features;
   info.queueCreateInfoCount = 1;
   info.pQueueCreateInfos = &queue;
-  if (const VkResult result = vkCreateDevice(core.physical, &info, nullptr, &core.root.device); result != VK_SUCCESS)
+  if (const VkResult result = vkCreateDevice(core.physical, &info, nullptr, &core.root.device);
+      result != VK_SUCCESS)
     return vulkanFailure("vkCreateDevice", result);
   vkGetDeviceQueue(core.root.device, core.queueFamily, 0, &core.queue);
   return {};
@@ -235,7 +264,8 @@ Result<void> makeQueueObjects(GpuDevice::Core& core) {
   allocate.commandPool = core.commandPool.get();
   allocate.level = VK_COMMAND_BUFFER_LEVEL_PRIMARY;
   allocate.commandBufferCount = 1;
-  if (const VkResult result = vkAllocateCommandBuffers(device, &allocate, &core.commandBuffer); result != VK_SUCCESS)
+  if (const VkResult result = vkAllocateCommandBuffers(device, &allocate, &core.commandBuffer);
+      result != VK_SUCCESS)
     return vulkanFailure("vkAllocateCommandBuffers", result);
   return {};
 }
@@ -265,7 +295,8 @@ Result<std::shared_ptr<GpuDevice>> GpuDevice::create() {
   auto core = std::make_shared<Core>();
   core->validated = environmentSays("ALIDADE_VULKAN_VALIDATION");
   if (core->validated && !hasValidationLayer()) {
-    logWarning("Vulkan validation is asked for, but its layer is not installed (package vulkan-validationlayers)");
+    logWarning(
+        "Vulkan validation is asked for, but its layer is not installed (package vulkan-validationlayers)");
     core->validated = false;
   }
   if (auto made = makeInstance(core->root, core->validated); !made) return fail(made.error());
@@ -281,10 +312,18 @@ Result<std::shared_ptr<GpuDevice>> GpuDevice::create() {
   return std::shared_ptr<GpuDevice>(new GpuDevice(std::move(core)));
 }
 
-const std::string& GpuDevice::name() const { return m_core->name; }
-bool GpuDevice::isSoftware() const { return m_core->properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU; }
-bool GpuDevice::isValidated() const { return m_core->validated; }
-int GpuDevice::validationMessageCount() const { return m_core->root.messages.load(); }
+const std::string& GpuDevice::name() const {
+  return m_core->name;
+}
+bool GpuDevice::isSoftware() const {
+  return m_core->properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU;
+}
+bool GpuDevice::isValidated() const {
+  return m_core->validated;
+}
+int GpuDevice::validationMessageCount() const {
+  return m_core->root.messages.load();
+}
 int GpuDevice::maximumImageSize() const {
   return static_cast<int>(std::min<std::uint32_t>(m_core->properties.limits.maxImageDimension2D, 32768));
 }
@@ -308,7 +347,8 @@ Result<void> GpuDevice::run(const std::function<void(GpuCommands&)>& record) {
   const VkFence fence = m_core->fence.get();
   if (const VkResult result = vkQueueSubmit2(m_core->queue, 1, &submit, fence); result != VK_SUCCESS)
     return vulkanFailure("vkQueueSubmit2", result);
-  if (const VkResult result = vkWaitForFences(m_core->root.device, 1, &fence, VK_TRUE, UINT64_MAX); result != VK_SUCCESS)
+  if (const VkResult result = vkWaitForFences(m_core->root.device, 1, &fence, VK_TRUE, UINT64_MAX);
+      result != VK_SUCCESS)
     return vulkanFailure("vkWaitForFences", result);
   if (const VkResult result = vkResetFences(m_core->root.device, 1, &fence); result != VK_SUCCESS)
     return vulkanFailure("vkResetFences", result);

@@ -26,8 +26,8 @@ class GpuDevice {
   ~GpuDevice();
 
   const std::string& name() const;
-  bool isSoftware() const;     ///< runs on the CPU
-  bool isValidated() const;    ///< the validation layer is on
+  bool isSoftware() const;             ///< runs on the CPU
+  bool isValidated() const;            ///< the validation layer is on
   int validationMessageCount() const;  ///< warnings and errors since the device was made
   int maximumImageSize() const;        ///< pixels along an edge
 

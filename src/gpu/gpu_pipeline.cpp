@@ -13,19 +13,25 @@ namespace {
 
 VkFormat attributeFormat(GpuVertexAttribute::Kind kind) {
   switch (kind) {
-    case GpuVertexAttribute::Kind::Float: return VK_FORMAT_R32_SFLOAT;
-    case GpuVertexAttribute::Kind::Vec3: return VK_FORMAT_R32G32B32_SFLOAT;
-    case GpuVertexAttribute::Kind::Uint: return VK_FORMAT_R32_UINT;
+    case GpuVertexAttribute::Kind::Float:
+      return VK_FORMAT_R32_SFLOAT;
+    case GpuVertexAttribute::Kind::Vec3:
+      return VK_FORMAT_R32G32B32_SFLOAT;
+    case GpuVertexAttribute::Kind::Uint:
+      return VK_FORMAT_R32_UINT;
   }
   return VK_FORMAT_UNDEFINED;
 }
 
 VkDescriptorType descriptorType(GpuBindingKind kind) {
   switch (kind) {
-    case GpuBindingKind::Uniform: return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
-    case GpuBindingKind::Storage: return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+    case GpuBindingKind::Uniform:
+      return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
+    case GpuBindingKind::Storage:
+      return VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
     case GpuBindingKind::SampledNearest:
-    case GpuBindingKind::SampledLinear: return VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
+    case GpuBindingKind::SampledLinear:
+      return VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
   }
   return VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER;
 }
@@ -46,8 +52,8 @@ struct Specialisation {
   explicit Specialisation(const std::vector<std::uint32_t>& constants) {
     for (std::uint32_t i = 0; i < constants.size(); ++i)
       entries.push_back({i, static_cast<std::uint32_t>(i * sizeof(std::uint32_t)), sizeof(std::uint32_t)});
-    info = {static_cast<std::uint32_t>(entries.size()), entries.data(), constants.size() * sizeof(std::uint32_t),
-            constants.data()};
+    info = {static_cast<std::uint32_t>(entries.size()), entries.data(),
+            constants.size() * sizeof(std::uint32_t), constants.data()};
   }
 };
 
@@ -74,31 +80,39 @@ VkPipelineColorBlendAttachmentState blendOf(const GpuColourTarget& target) {
   return state;
 }
 
-Result<PipelineHandle> createGraphics(VkDevice device, const GpuGraphicsDescription& what, VkPipelineLayout layout,
-                                      const ShaderHandle& vertex, const ShaderHandle& fragment) {
+Result<PipelineHandle> createGraphics(VkDevice device, const GpuGraphicsDescription& what,
+                                      VkPipelineLayout layout, const ShaderHandle& vertex,
+                                      const ShaderHandle& fragment) {
   const Specialisation specialisation(what.constants);
   const std::array stages{stageOf(VK_SHADER_STAGE_VERTEX_BIT, vertex, specialisation),
                           stageOf(VK_SHADER_STAGE_FRAGMENT_BIT, fragment, specialisation)};
   const VkVertexInputBindingDescription binding{0, what.vertexStride, VK_VERTEX_INPUT_RATE_VERTEX};
   std::vector<VkVertexInputAttributeDescription> attributes;
   for (const GpuVertexAttribute& a : what.attributes)
-    attributes.push_back({static_cast<std::uint32_t>(attributes.size()), 0, attributeFormat(a.kind), a.offset});
-  auto input = stamped<VkPipelineVertexInputStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO);
+    attributes.push_back(
+        {static_cast<std::uint32_t>(attributes.size()), 0, attributeFormat(a.kind), a.offset});
+  auto input = stamped<VkPipelineVertexInputStateCreateInfo>(
+      VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO);
   input.vertexBindingDescriptionCount = what.vertexStride ? 1 : 0;
   input.pVertexBindingDescriptions = &binding;
   input.vertexAttributeDescriptionCount = static_cast<std::uint32_t>(attributes.size());
   input.pVertexAttributeDescriptions = attributes.data();
 
-  auto assembly = stamped<VkPipelineInputAssemblyStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO);
+  auto assembly = stamped<VkPipelineInputAssemblyStateCreateInfo>(
+      VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO);
   assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
-  auto viewport = stamped<VkPipelineViewportStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO);
+  auto viewport =
+      stamped<VkPipelineViewportStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO);
   viewport.viewportCount = viewport.scissorCount = 1;
-  auto raster = stamped<VkPipelineRasterizationStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO);
+  auto raster = stamped<VkPipelineRasterizationStateCreateInfo>(
+      VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO);
   raster.cullMode = VK_CULL_MODE_NONE;
   raster.lineWidth = 1;
-  auto samples = stamped<VkPipelineMultisampleStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO);
+  auto samples =
+      stamped<VkPipelineMultisampleStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO);
   samples.rasterizationSamples = VK_SAMPLE_COUNT_1_BIT;
-  auto depth = stamped<VkPipelineDepthStencilStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO);
+  auto depth = stamped<VkPipelineDepthStencilStateCreateInfo>(
+      VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO);
   depth.depthTestEnable = what.depthTest;
   depth.depthWriteEnable = what.depthWrite;
   depth.depthCompareOp = VK_COMPARE_OP_GREATER;
@@ -108,11 +122,13 @@ Result<PipelineHandle> createGraphics(VkDevice device, const GpuGraphicsDescript
     blends.push_back(blendOf(target));
     formats.push_back(vulkanFormat(target.format));
   }
-  auto blend = stamped<VkPipelineColorBlendStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO);
+  auto blend =
+      stamped<VkPipelineColorBlendStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO);
   blend.attachmentCount = static_cast<std::uint32_t>(blends.size());
   blend.pAttachments = blends.data();
   const std::array dynamicStates{VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR};
-  auto dynamic = stamped<VkPipelineDynamicStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO);
+  auto dynamic =
+      stamped<VkPipelineDynamicStateCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO);
   dynamic.dynamicStateCount = static_cast<std::uint32_t>(dynamicStates.size());
   dynamic.pDynamicStates = dynamicStates.data();
   auto rendering = stamped<VkPipelineRenderingCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_RENDERING_CREATE_INFO);
@@ -141,8 +157,8 @@ Result<PipelineHandle> createGraphics(VkDevice device, const GpuGraphicsDescript
   return PipelineHandle(device, pipeline);
 }
 
-Result<PipelineHandle> createCompute(VkDevice device, const GpuComputeDescription& what, VkPipelineLayout layout,
-                                     const ShaderHandle& shader) {
+Result<PipelineHandle> createCompute(VkDevice device, const GpuComputeDescription& what,
+                                     VkPipelineLayout layout, const ShaderHandle& shader) {
   const Specialisation specialisation(what.constants);
   auto info = stamped<VkComputePipelineCreateInfo>(VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO);
   info.stage = stageOf(VK_SHADER_STAGE_COMPUTE_BIT, shader, specialisation);
@@ -167,17 +183,20 @@ Result<void> makeLayouts(GpuPipeline::State& state) {
                                            : VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT;
     bindings.push_back(binding);
   }
-  auto setInfo = stamped<VkDescriptorSetLayoutCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
+  auto setInfo =
+      stamped<VkDescriptorSetLayoutCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
   setInfo.bindingCount = static_cast<std::uint32_t>(bindings.size());
   setInfo.pBindings = bindings.data();
-  auto set = makeHandle<SetLayoutHandle>("vkCreateDescriptorSetLayout", vkCreateDescriptorSetLayout, device, setInfo);
+  auto set = makeHandle<SetLayoutHandle>("vkCreateDescriptorSetLayout", vkCreateDescriptorSetLayout, device,
+                                         setInfo);
   if (!set) return fail(set.error());
   state.setLayout = std::move(*set);
   const VkDescriptorSetLayout setLayout = state.setLayout.get();
   auto info = stamped<VkPipelineLayoutCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO);
   info.setLayoutCount = 1;
   info.pSetLayouts = &setLayout;
-  auto layout = makeHandle<PipelineLayoutHandle>("vkCreatePipelineLayout", vkCreatePipelineLayout, device, info);
+  auto layout =
+      makeHandle<PipelineLayoutHandle>("vkCreatePipelineLayout", vkCreatePipelineLayout, device, info);
   if (!layout) return fail(layout.error());
   state.layout = std::move(*layout);
   return {};
@@ -204,7 +223,8 @@ Result<GpuPipeline> makeFrom(const std::shared_ptr<GpuDevice::Core>& core, const
 }  // namespace
 
 const std::vector<GpuBindingKind>& GpuPipeline::State::bindings() const {
-  return std::visit([](const auto& d) -> const std::vector<GpuBindingKind>& { return d.bindings; }, description);
+  return std::visit([](const auto& d) -> const std::vector<GpuBindingKind>& { return d.bindings; },
+                    description);
 }
 
 Result<void> GpuPipeline::State::build(bool fromSource) {

@@ -9,24 +9,33 @@ namespace alidade {
 
 std::size_t bytesPerPixel(GpuFormat format) {
   switch (format) {
-    case GpuFormat::R8Uint: return 1;
-    case GpuFormat::Rg8: return 2;
+    case GpuFormat::R8Uint:
+      return 1;
+    case GpuFormat::Rg8:
+      return 2;
     case GpuFormat::Rgba8:
     case GpuFormat::R32Float:
     case GpuFormat::R32Uint:
-    case GpuFormat::Depth32: return 4;
+    case GpuFormat::Depth32:
+      return 4;
   }
   return 0;
 }
 
 VkFormat vulkanFormat(GpuFormat format) {
   switch (format) {
-    case GpuFormat::Rgba8: return VK_FORMAT_R8G8B8A8_UNORM;
-    case GpuFormat::Rg8: return VK_FORMAT_R8G8_UNORM;
-    case GpuFormat::R8Uint: return VK_FORMAT_R8_UINT;
-    case GpuFormat::R32Float: return VK_FORMAT_R32_SFLOAT;
-    case GpuFormat::R32Uint: return VK_FORMAT_R32_UINT;
-    case GpuFormat::Depth32: return VK_FORMAT_D32_SFLOAT;
+    case GpuFormat::Rgba8:
+      return VK_FORMAT_R8G8B8A8_UNORM;
+    case GpuFormat::Rg8:
+      return VK_FORMAT_R8G8_UNORM;
+    case GpuFormat::R8Uint:
+      return VK_FORMAT_R8_UINT;
+    case GpuFormat::R32Float:
+      return VK_FORMAT_R32_SFLOAT;
+    case GpuFormat::R32Uint:
+      return VK_FORMAT_R32_UINT;
+    case GpuFormat::Depth32:
+      return VK_FORMAT_D32_SFLOAT;
   }
   return VK_FORMAT_UNDEFINED;
 }
@@ -35,13 +44,25 @@ VkImageAspectFlags aspectOf(GpuFormat format) {
   return format == GpuFormat::Depth32 ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT;
 }
 
-std::size_t GpuBuffer::size() const { return m_state->size; }
-std::byte* GpuBuffer::data() { return m_state->mapped; }
-const std::byte* GpuBuffer::data() const { return m_state->mapped; }
+std::size_t GpuBuffer::size() const {
+  return m_state->size;
+}
+std::byte* GpuBuffer::data() {
+  return m_state->mapped;
+}
+const std::byte* GpuBuffer::data() const {
+  return m_state->mapped;
+}
 
-int GpuImage::width() const { return m_state->width; }
-int GpuImage::height() const { return m_state->height; }
-GpuFormat GpuImage::format() const { return m_state->format; }
+int GpuImage::width() const {
+  return m_state->width;
+}
+int GpuImage::height() const {
+  return m_state->height;
+}
+GpuFormat GpuImage::format() const {
+  return m_state->format;
+}
 std::size_t GpuImage::byteCount() const {
   return static_cast<std::size_t>(m_state->width) * m_state->height * bytesPerPixel(m_state->format);
 }
@@ -50,31 +71,41 @@ namespace {
 
 VkBufferUsageFlags usageOf(GpuBufferUse use) {
   switch (use) {
-    case GpuBufferUse::Vertex: return VK_BUFFER_USAGE_VERTEX_BUFFER_BIT;
-    case GpuBufferUse::Index: return VK_BUFFER_USAGE_INDEX_BUFFER_BIT;
-    case GpuBufferUse::Uniform: return VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT;
-    case GpuBufferUse::Storage: return VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
-    case GpuBufferUse::Upload: return VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
-    case GpuBufferUse::Readback: return VK_BUFFER_USAGE_TRANSFER_DST_BIT;
+    case GpuBufferUse::Vertex:
+      return VK_BUFFER_USAGE_VERTEX_BUFFER_BIT;
+    case GpuBufferUse::Index:
+      return VK_BUFFER_USAGE_INDEX_BUFFER_BIT;
+    case GpuBufferUse::Uniform:
+      return VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT;
+    case GpuBufferUse::Storage:
+      return VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+    case GpuBufferUse::Upload:
+      return VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
+    case GpuBufferUse::Readback:
+      return VK_BUFFER_USAGE_TRANSFER_DST_BIT;
   }
   return 0;
 }
 
-constexpr VkMemoryPropertyFlags kHost = VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
+constexpr VkMemoryPropertyFlags kHost =
+    VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
 
 VkImageUsageFlags usageOf(GpuFormat format) {
   const VkImageUsageFlags target = format == GpuFormat::Depth32 ? VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT
                                                                 : VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
-  return target | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
+  return target | VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
+         VK_IMAGE_USAGE_TRANSFER_DST_BIT;
 }
 
 }  // namespace
 
-Result<MemoryHandle> GpuDevice::Core::allocate(const VkMemoryRequirements& needs, VkMemoryPropertyFlags wanted,
+Result<MemoryHandle> GpuDevice::Core::allocate(const VkMemoryRequirements& needs,
+                                               VkMemoryPropertyFlags wanted,
                                                VkMemoryPropertyFlags required) const {
   for (const VkMemoryPropertyFlags flags : {wanted | required, required}) {
     for (std::uint32_t type = 0; type < memory.memoryTypeCount; ++type) {
-      if (!(needs.memoryTypeBits & (1u << type)) || (memory.memoryTypes[type].propertyFlags & flags) != flags) continue;
+      if (!(needs.memoryTypeBits & (1u << type)) || (memory.memoryTypes[type].propertyFlags & flags) != flags)
+        continue;
       auto info = stamped<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
       info.allocationSize = needs.size;
       info.memoryTypeIndex = type;
@@ -97,12 +128,15 @@ Result<GpuBuffer> GpuDevice::makeBuffer(GpuBufferUse use, std::size_t bytes) {
   if (!buffer) return fail(buffer.error());
   VkMemoryRequirements needs{};
   vkGetBufferMemoryRequirements(device, buffer->get(), &needs);
-  auto memory = m_core->allocate(needs, use == GpuBufferUse::Readback ? VK_MEMORY_PROPERTY_HOST_CACHED_BIT : 0, kHost);
+  auto memory =
+      m_core->allocate(needs, use == GpuBufferUse::Readback ? VK_MEMORY_PROPERTY_HOST_CACHED_BIT : 0, kHost);
   if (!memory) return fail(memory.error());
-  if (const VkResult result = vkBindBufferMemory(device, buffer->get(), memory->get(), 0); result != VK_SUCCESS)
+  if (const VkResult result = vkBindBufferMemory(device, buffer->get(), memory->get(), 0);
+      result != VK_SUCCESS)
     return vulkanFailure("vkBindBufferMemory", result);
   void* mapped = nullptr;
-  if (const VkResult result = vkMapMemory(device, memory->get(), 0, VK_WHOLE_SIZE, 0, &mapped); result != VK_SUCCESS)
+  if (const VkResult result = vkMapMemory(device, memory->get(), 0, VK_WHOLE_SIZE, 0, &mapped);
+      result != VK_SUCCESS)
     return vulkanFailure("vkMapMemory", result);
   state->mapped = static_cast<std::byte*>(mapped);
   state->buffer = std::move(*buffer);
@@ -112,8 +146,9 @@ Result<GpuBuffer> GpuDevice::makeBuffer(GpuBufferUse use, std::size_t bytes) {
 
 Result<GpuImage> GpuDevice::makeImage(GpuFormat format, int width, int height) {
   if (width <= 0 || height <= 0 || width > maximumImageSize() || height > maximumImageSize())
-    return fail("A picture of " + std::to_string(width) + " × " + std::to_string(height) + " pixels cannot be drawn",
-                name(), "Choose a size of 1 to " + std::to_string(maximumImageSize()) + " pixels an edge");
+    return fail(
+        "A picture of " + std::to_string(width) + " × " + std::to_string(height) + " pixels cannot be drawn",
+        name(), "Choose a size of 1 to " + std::to_string(maximumImageSize()) + " pixels an edge");
   auto state = std::make_shared<GpuImage::State>();
   state->core = m_core;
   state->format = format;
@@ -149,7 +184,8 @@ Result<GpuImage> GpuDevice::makeImage(GpuFormat format, int width, int height) {
   return GpuImage(std::move(state));
 }
 
-Result<GpuBindings> GpuDevice::makeBindings(const GpuPipeline& pipeline, const std::vector<GpuResource>& resources) {
+Result<GpuBindings> GpuDevice::makeBindings(const GpuPipeline& pipeline,
+                                            const std::vector<GpuResource>& resources) {
   const auto& kinds = pipeline.state().bindings();
   auto state = std::make_shared<GpuBindings::State>();
   state->core = m_core;
@@ -163,7 +199,8 @@ Result<GpuBindings> GpuDevice::makeBindings(const GpuPipeline& pipeline, const s
   poolInfo.poolSizeCount = static_cast<std::uint32_t>(sizes.size());
   poolInfo.pPoolSizes = sizes.data();
   const VkDevice device = m_core->root.device;
-  auto pool = makeHandle<DescriptorPoolHandle>("vkCreateDescriptorPool", vkCreateDescriptorPool, device, poolInfo);
+  auto pool =
+      makeHandle<DescriptorPoolHandle>("vkCreateDescriptorPool", vkCreateDescriptorPool, device, poolInfo);
   if (!pool) return fail(pool.error());
   state->pool = std::move(*pool);
   const VkDescriptorSetLayout layout = pipeline.state().setLayout.get();

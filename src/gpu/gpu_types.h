@@ -41,12 +41,12 @@ struct GpuVertexAttribute {
 struct GpuGraphicsDescription {
   std::string vertexShader;
   std::string fragmentShader;
-  std::uint32_t vertexStride = 0;                  ///< bytes; 0: the vertex shader fetches by itself
-  std::vector<GpuVertexAttribute> attributes;      ///< location = index
+  std::uint32_t vertexStride = 0;              ///< bytes; 0: the vertex shader fetches by itself
+  std::vector<GpuVertexAttribute> attributes;  ///< location = index
   std::vector<GpuColourTarget> targets;
-  bool depthTest = false;                          ///< reversed: greater is nearer
+  bool depthTest = false;  ///< reversed: greater is nearer
   bool depthWrite = false;
-  std::vector<GpuBindingKind> bindings;            ///< binding = index
+  std::vector<GpuBindingKind> bindings;  ///< binding = index
   std::vector<std::uint32_t> constants;
 };
 

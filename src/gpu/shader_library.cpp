@@ -33,9 +33,13 @@ Result<std::vector<std::uint32_t>> readSpirv(const fs::path& path) {
 }
 
 #ifdef ALIDADE_SHADER_SOURCE_DIR
-fs::path sourceFolder() { return ALIDADE_SHADER_SOURCE_DIR; }
+fs::path sourceFolder() {
+  return ALIDADE_SHADER_SOURCE_DIR;
+}
 #else
-fs::path sourceFolder() { return {}; }
+fs::path sourceFolder() {
+  return {};
+}
 #endif
 
 }  // namespace
@@ -76,15 +80,18 @@ fs::file_time_type shaderSourceTime(const std::string& name) {
 
 Result<std::vector<std::uint32_t>> compileShader(const std::string& name) {
   const fs::path folder = sourceFolder();
-  const fs::path out = fs::temp_directory_path() / ("alidade-" + std::to_string(getpid()) + "-" + name + ".spv");
-  const std::string command = "glslc --target-env=vulkan1.3 -O -I '" + folder.string() + "' -o '" + out.string() +
-                              "' '" + (folder / name).string() + "' 2>&1";
+  const fs::path out =
+      fs::temp_directory_path() / ("alidade-" + std::to_string(getpid()) + "-" + name + ".spv");
+  const std::string command = "glslc --target-env=vulkan1.3 -O -I '" + folder.string() + "' -o '" +
+                              out.string() + "' '" + (folder / name).string() + "' 2>&1";
   std::FILE* pipe = popen(command.c_str(), "r");
   if (!pipe) return fail("The shader compiler cannot be started", "glslc", "Install the package glslc");
   std::string words;
   std::array<char, 512> buffer{};
-  while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), pipe)) words.append(buffer.data(), count);
-  if (pclose(pipe) != 0) return fail("The shader " + name + " does not compile", words, "The last good one is kept");
+  while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), pipe))
+    words.append(buffer.data(), count);
+  if (pclose(pipe) != 0)
+    return fail("The shader " + name + " does not compile", words, "The last good one is kept");
   auto spirv = readSpirv(out);
   std::error_code error;
   fs::remove(out, error);

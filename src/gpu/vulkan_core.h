@@ -68,7 +68,8 @@ tl::unexpected<Error> vulkanFailure(const char* call, VkResult result);
 
 /// Makes a handle with a vkCreate… call; the call's failure is the error.
 template <class Handle, class Vk, class CreateInfo>
-Result<Handle> makeHandle(const char* call, VkResult (*create)(VkDevice, const CreateInfo*, const VkAllocationCallbacks*, Vk*),
+Result<Handle> makeHandle(const char* call,
+                          VkResult (*create)(VkDevice, const CreateInfo*, const VkAllocationCallbacks*, Vk*),
                           VkDevice device, const CreateInfo& info) {
   Vk handle = VK_NULL_HANDLE;
   if (const VkResult result = create(device, &info, nullptr, &handle); result != VK_SUCCESS)

@@ -31,7 +31,9 @@ glm::dvec2 resultFromRaw(const FrameDescription& frame, const Camera& scaledCame
   return (rawPx + 0.5) * result / raw - 0.5;
 }
 
-bool hasFonts() { return qobject_cast<QGuiApplication*>(QCoreApplication::instance()) != nullptr; }
+bool hasFonts() {
+  return qobject_cast<QGuiApplication*>(QCoreApplication::instance()) != nullptr;
+}
 
 QFont overlayFont(double scale, bool bold) {
   QFont font(QStringLiteral("DejaVu Sans"));
@@ -84,7 +86,8 @@ std::optional<AnnotationLayout> layOutAnnotation(const Annotation& annotation, c
   }
   layout.tail = layout.tip + annotation.offsetPx * resultPerRaw(frame, scaledCamera);
   const glm::dvec2 reach(2.0 * scaledCamera.width(), 2.0 * scaledCamera.height());
-  if (!glm::all(glm::lessThan(glm::abs(layout.tip), reach)) || !glm::all(glm::lessThan(glm::abs(layout.tail), reach)))
+  if (!glm::all(glm::lessThan(glm::abs(layout.tip), reach)) ||
+      !glm::all(glm::lessThan(glm::abs(layout.tail), reach)))
     return std::nullopt;
   const double scale = drawingScale(scaledCamera.width(), scaledCamera.height());
   layout.text = layOutText(annotation.text, overlayFont(scale));

@@ -24,7 +24,7 @@ double resultPerRaw(const FrameDescription& frame, const Camera& scaledCamera);
 /// A text in lines of readable length and the room it takes.
 struct TextBlock {
   QStringList lines;
-  QSizeF size;        ///< pixels, with `padding` on all sides
+  QSizeF size;  ///< pixels, with `padding` on all sides
   double padding = 0;
 };
 
@@ -34,11 +34,11 @@ QFont overlayFont(double scale, bool bold = false);
 TextBlock layOutText(const std::string& text, const QFont& font);
 
 struct AnnotationLayout {
-  glm::dvec2 tip{0};    ///< what it points at
-  glm::dvec2 tail{0};   ///< where the text or the arrow's end is
-  double depth = 0;     ///< metres; 0 for one tied to the picture
+  glm::dvec2 tip{0};   ///< what it points at
+  glm::dvec2 tail{0};  ///< where the text or the arrow's end is
+  double depth = 0;    ///< metres; 0 for one tied to the picture
   TextBlock text;
-  QRectF box;           ///< of the text; empty where there is none
+  QRectF box;  ///< of the text; empty where there is none
 };
 
 /// Nothing where the annotation cannot be seen: behind the camera, beyond the lens, or its tip farther

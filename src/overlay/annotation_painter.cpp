@@ -26,7 +26,9 @@ const QColor kSelectionColour(255, 140, 13);
 const QColor kResidualColour(255, 60, 60);
 const QColor kCasing(10, 14, 20, 205);
 
-QPointF point(const glm::dvec2& p) { return {p.x + 0.5, p.y + 0.5}; }  // QPainter's origin is the corner
+QPointF point(const glm::dvec2& p) {
+  return {p.x + 0.5, p.y + 0.5};
+}  // QPainter's origin is the corner
 
 /// How a mark is drawn for what the scan says of it; not at all where `drawn` is false.
 struct Look {
@@ -50,8 +52,8 @@ class Painter {
       : m_picture(picture),
         m_frame(frame),
         m_camera(camera),
-        m_image(reinterpret_cast<uchar*>(picture.colour.data()), picture.colour.width(), picture.colour.height(),
-                4 * picture.colour.width(), QImage::Format_RGBA8888_Premultiplied),
+        m_image(reinterpret_cast<uchar*>(picture.colour.data()), picture.colour.width(),
+                picture.colour.height(), 4 * picture.colour.width(), QImage::Format_RGBA8888_Premultiplied),
         m_paint(&m_image),
         m_scale(drawingScale(picture.colour.width(), picture.colour.height())) {
     m_paint.setRenderHint(QPainter::Antialiasing);
@@ -67,7 +69,8 @@ class Painter {
   void stroke(const QPainterPath& path, const QColor& colour, double width, const Look& look);
   void stakeSymbol(const glm::dvec2& pixel, const QColor& colour, const Look& look, bool selected);
   void toleranceCircle(const StakePoint& stake, const QColor& colour, const Look& look);
-  void label(const glm::dvec2& at, double clearance, const std::string& text, bool bold, const Look& look, bool must);
+  void label(const glm::dvec2& at, double clearance, const std::string& text, bool bold, const Look& look,
+             bool must);
   void text(const TextBlock& block, const QRectF& box, const QFont& font, const QColor& colour);
   void annotation(const Annotation& annotation, const AnnotationLayout& layout, const Look& look);
   bool isFree(const QRectF& box) const;
@@ -91,8 +94,8 @@ Visibility Painter::visibilityOf(const glm::dvec2& pixel, double depth) const {
 void Painter::stroke(const QPainterPath& path, const QColor& colour, double width, const Look& look) {
   m_paint.setBrush(Qt::NoBrush);
   m_paint.setOpacity(look.opacity);
-  m_paint.setPen(QPen(kCasing, (width + 2.2) * m_scale, look.line == Qt::SolidLine ? Qt::SolidLine : look.line,
-                      Qt::FlatCap, Qt::RoundJoin));
+  m_paint.setPen(QPen(kCasing, (width + 2.2) * m_scale,
+                      look.line == Qt::SolidLine ? Qt::SolidLine : look.line, Qt::FlatCap, Qt::RoundJoin));
   if (look.line == Qt::SolidLine) m_paint.drawPath(path);
   QPen pen(colour, width * m_scale, look.line, Qt::FlatCap, Qt::RoundJoin);
   if (look.line != Qt::SolidLine) pen.setWidthF((width + 0.4) * m_scale);
@@ -122,7 +125,8 @@ void Painter::toleranceCircle(const StakePoint& stake, const QColor& colour, con
   const auto centre = m_camera.project(m_frame.cameraFromWorld * stake.position);
   for (int i = 0; i <= corners; ++i) {
     const double angle = 2 * std::numbers::pi * (i % corners) / corners;
-    const glm::dvec3 rim = stake.position + stake.toleranceM * glm::dvec3(std::cos(angle), std::sin(angle), 0);
+    const glm::dvec3 rim =
+        stake.position + stake.toleranceM * glm::dvec3(std::cos(angle), std::sin(angle), 0);
     const auto pixel = m_camera.project(m_frame.cameraFromWorld * rim);
     if (!pixel || !centre) return;
     widest = std::max(widest, glm::length(*pixel - *centre));
@@ -136,8 +140,8 @@ void Painter::toleranceCircle(const StakePoint& stake, const QColor& colour, con
 
 bool Painter::isFree(const QRectF& box) const {
   const QRectF whole(0, 0, m_image.width(), m_image.height());
-  return whole.contains(box) &&
-         std::none_of(m_taken.begin(), m_taken.end(), [&](const QRectF& other) { return other.intersects(box); });
+  return whole.contains(box) && std::none_of(m_taken.begin(), m_taken.end(),
+                                             [&](const QRectF& other) { return other.intersects(box); });
 }
 
 void Painter::text(const TextBlock& block, const QRectF& box, const QFont& font, const QColor& colour) {
@@ -155,8 +159,8 @@ void Painter::text(const TextBlock& block, const QRectF& box, const QFont& font,
 }
 
 /// Beside its mark in the first free place of eight; left out where all are taken, unless it must stand.
-void Painter::label(const glm::dvec2& at, double clearance, const std::string& words, bool bold, const Look& look,
-                    bool must) {
+void Painter::label(const glm::dvec2& at, double clearance, const std::string& words, bool bold,
+                    const Look& look, bool must) {
   if (!m_frame.display.labels || words.empty() || !hasFonts()) return;
   const QFont font = overlayFont(m_scale, bold);
   const TextBlock block = layOutText(words, font);
@@ -168,7 +172,9 @@ void Painter::label(const glm::dvec2& at, double clearance, const std::string& w
   for (const double distance : {clearance, 2.5 * clearance}) {
     for (const auto& [sx, sy] : sides) {
       const double x = sx > 0 ? c.x() + distance : sx < 0 ? c.x() - distance - w : c.x() - 0.5 * w;
-      const double y = sy > 0 ? c.y() + 0.6 * distance : sy < 0 ? c.y() - 0.6 * distance - h : c.y() - 0.5 * h;
+      const double y = sy > 0   ? c.y() + 0.6 * distance
+                       : sy < 0 ? c.y() - 0.6 * distance - h
+                                : c.y() - 0.5 * h;
       const QRectF box(QPointF(x, y), block.size);
       const bool last = must && distance > clearance && sx == 0 && sy > 0;
       if (!isFree(box) && !last) continue;
@@ -307,7 +313,8 @@ void paintAnnotations(OverlayPicture& picture, const FrameDescription& frame, co
   painter.residuals();
 }
 
-AnnotationId annotationAt(const FrameDescription& frame, const Camera& scaledCamera, const glm::dvec2& pixel) {
+AnnotationId annotationAt(const FrameDescription& frame, const Camera& scaledCamera,
+                          const glm::dvec2& pixel) {
   if (!frame.display.annotations) return {};
   const double reach = 5 * drawingScale(scaledCamera.width(), scaledCamera.height());
   // The last one is painted on top.

@@ -82,12 +82,16 @@ std::vector<Job> jobsOf(const FrameDescription& frame) {
   return jobs;
 }
 
-bool isFinite(const glm::dvec3& p) { return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z); }
+bool isFinite(const glm::dvec3& p) {
+  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z);
+}
 
 Piece workOn(const Job& job, const DesignModel& model, const std::vector<glm::dvec3>& inCamera,
              const LensError& lens, std::size_t budget) {
   Piece piece;
-  const auto isUsable = [&](std::uint32_t vertex) { return vertex < inCamera.size() && isFinite(inCamera[vertex]); };
+  const auto isUsable = [&](std::uint32_t vertex) {
+    return vertex < inCamera.size() && isFinite(inCamera[vertex]);
+  };
   if (job.isSurface) {
     SurfaceSplitter splitter(lens, budget);
     splitter.vertices.reserve(2 * job.count);
@@ -133,7 +137,8 @@ void join(DrawList& list, std::vector<Piece>& pieces) {
       std::copy(pieces[i].vertices.begin(), pieces[i].vertices.end(), list.surface.begin() + vertexStart[i]);
       std::copy(pieces[i].edges.begin(), pieces[i].edges.end(), list.edges.begin() + edgeStart[i]);
       const auto offset = static_cast<std::uint32_t>(vertexStart[i]);
-      std::transform(pieces[i].indices.begin(), pieces[i].indices.end(), list.triangles.begin() + indexStart[i],
+      std::transform(pieces[i].indices.begin(), pieces[i].indices.end(),
+                     list.triangles.begin() + indexStart[i],
                      [offset](std::uint32_t index) { return index + offset; });
     }
   });
@@ -179,7 +184,8 @@ DrawList buildDrawList(const FrameDescription& frame, const Camera& scaledCamera
   const LensError lens(scaledCamera, frame.display.subdivisionErrorPx);
   std::vector<std::vector<glm::dvec3>> inCamera(frame.designs.size());
   for (std::size_t i = 0; i < frame.designs.size(); ++i)
-    if (frame.designs[i].model) inCamera[i] = verticesInCamera(*frame.designs[i].model, frame.cameraFromWorld);
+    if (frame.designs[i].model)
+      inCamera[i] = verticesInCamera(*frame.designs[i].model, frame.cameraFromWorld);
 
   const std::vector<Job> jobs = jobsOf(frame);
   std::size_t total = 0;

@@ -25,7 +25,7 @@ struct SurfaceVertex {
 struct EdgeVertex {
   glm::vec3 pInCamera;
   std::uint32_t element = 0;
-  float along = 0;            ///< metres from the edge's start, for dashes
+  float along = 0;  ///< metres from the edge's start, for dashes
 };
 
 /// Look of one element; index as in SurfaceVertex::element - 1.
@@ -39,15 +39,15 @@ struct ElementStyle {
 /// buildDrawList from a FrameDescription, so that no device knows the world, the survey or a lens bound.
 struct DrawList {
   int width = 0, height = 0;
-  Camera camera;                     ///< scaled to width × height
-  const ColourImage* image = nullptr;          ///< any size; stretched to the result
-  const DepthImage* scanDepth = nullptr;       ///< width × height; null: nothing hides
-  const ColourImage* pointColour = nullptr;    ///< width × height; null: pass off
-  std::vector<SurfaceVertex> surface;          ///< indexed by `triangles`
+  Camera camera;                             ///< scaled to width × height
+  const ColourImage* image = nullptr;        ///< any size; stretched to the result
+  const DepthImage* scanDepth = nullptr;     ///< width × height; null: nothing hides
+  const ColourImage* pointColour = nullptr;  ///< width × height; null: pass off
+  std::vector<SurfaceVertex> surface;        ///< indexed by `triangles`
   std::vector<std::uint32_t> triangles;
-  std::vector<EdgeVertex> edges;               ///< pairs
+  std::vector<EdgeVertex> edges;  ///< pairs
   std::vector<ElementStyle> styles;
-  glm::vec3 lightDirection{0, 0, 1};           ///< camera axes, unit, the way light travels
+  glm::vec3 lightDirection{0, 0, 1};  ///< camera axes, unit, the way light travels
   DisplaySettings display;
   double worstErrorPx = 0;
 };

@@ -39,10 +39,10 @@ struct ResidualMark {
 /// All that a frame's picture is made of: plain data, no device, no file. World coordinates are
 /// double; whatever turns them to float first subtracts the camera's centre.
 struct FrameDescription {
-  Camera camera;                   ///< of the raw picture's size
+  Camera camera;  ///< of the raw picture's size
   RigidTransform cameraFromWorld;
   std::shared_ptr<const ColourImage> image;  ///< raw picture; null draws a dark ground
-  int width = 0, height = 0;       ///< of the result; 0: the raw picture's. The lens is scaled to it.
+  int width = 0, height = 0;  ///< of the result; 0: the raw picture's. The lens is scaled to it.
 
   std::vector<std::shared_ptr<const PointStore>> clouds;
   std::vector<DesignLayer> designs;
@@ -65,10 +65,11 @@ struct ElementPixels {
 /// The picture and what can be asked of it. All images are of the result's size.
 struct OverlayPicture {
   ColourImage colour;
-  DepthImage scanDepth;     ///< occlusion depth: +inf or NaN as in raster/occlusion.h
-  DepthImage designDepth;   ///< front-most design surface, metres along the axis; +inf where none
-  IdImage element;          ///< 1 + index over all layers' elements in order; 0 where none
-  Image<std::uint8_t> state;  ///< Visibility of the design at the pixel, as its enum value; Outside where none
+  DepthImage scanDepth;    ///< occlusion depth: +inf or NaN as in raster/occlusion.h
+  DepthImage designDepth;  ///< front-most design surface, metres along the axis; +inf where none
+  IdImage element;         ///< 1 + index over all layers' elements in order; 0 where none
+  Image<std::uint8_t>
+      state;  ///< Visibility of the design at the pixel, as its enum value; Outside where none
 
   std::uint64_t pointsTotal = 0, pointsDrawn = 0;
   double worstErrorPx = 0;  ///< largest distance of a drawn design edge from its exact curve, pixels

@@ -17,11 +17,15 @@ constexpr float kCasingHalfWidthPx = 1.75f;
 /// Edges lie in the faces that they bound: rounding must not put them behind.
 constexpr float kEdgeSlack = 1.0005f;
 
-float flag(bool on) { return on ? 1.0f : 0.0f; }
+float flag(bool on) {
+  return on ? 1.0f : 0.0f;
+}
 
 }  // namespace
 
-double drawingScale(int width, int height) { return std::max(1.0, std::min(width / 1920.0, height / 1080.0)); }
+double drawingScale(int width, int height) {
+  return std::max(1.0, std::min(width / 1920.0, height / 1080.0));
+}
 
 FrameUniform frameUniform(const DrawList& list) {
   const DisplaySettings& d = list.display;

@@ -37,7 +37,8 @@ struct StyleUniform {
 };
 static_assert(sizeof(StyleUniform) == 32);
 static_assert(sizeof(SurfaceVertex) == 28 && offsetof(SurfaceVertex, normal) == 12);
-static_assert(sizeof(EdgeVertex) == 20 && offsetof(EdgeVertex, element) == 12 && offsetof(EdgeVertex, along) == 16);
+static_assert(sizeof(EdgeVertex) == 20 && offsetof(EdgeVertex, element) == 12 &&
+              offsetof(EdgeVertex, along) == 16);
 
 /// Lines and patterns keep their size on a 1080-line picture and grow with larger ones.
 double drawingScale(int width, int height);

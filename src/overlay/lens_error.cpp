@@ -95,8 +95,9 @@ void LensError::findCurvature() {
       const glm::dvec2 n = r * glm::dvec2(std::cos(angle), std::sin(angle));
       if (glm::any(glm::lessThan(n, m_low)) || glm::any(glm::greaterThan(n, m_high)) || !inside(n)) continue;
       const glm::dvec2 centre = pixel(n);
-      for (const glm::dvec2& d : {glm::dvec2(e, 0), glm::dvec2(0, e), glm::dvec2(e, e) * std::numbers::sqrt2 / 2.0,
-                                  glm::dvec2(e, -e) * std::numbers::sqrt2 / 2.0})
+      for (const glm::dvec2& d :
+           {glm::dvec2(e, 0), glm::dvec2(0, e), glm::dvec2(e, e) * std::numbers::sqrt2 / 2.0,
+            glm::dvec2(e, -e) * std::numbers::sqrt2 / 2.0})
         largest = std::max(largest, glm::length(pixel(n + d) - 2.0 * centre + pixel(n - d)) / (e * e));
     }
   }

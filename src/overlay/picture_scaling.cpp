@@ -45,7 +45,8 @@ ColourImage shrunk(const ColourImage& picture, int width, int height) {
       std::fill(sums.begin(), sums.end(), 0.0f);
       for (std::size_t i = 0; i < rows[y].weights.size(); ++i) {
         const float weight = rows[y].weights[i];
-        const auto* source = reinterpret_cast<const std::uint8_t*>(picture.row(rows[y].first + static_cast<int>(i)));
+        const auto* source =
+            reinterpret_cast<const std::uint8_t*>(picture.row(rows[y].first + static_cast<int>(i)));
         for (std::size_t k = 0; k < sums.size(); ++k) sums[k] += weight * source[k];
       }
       for (int x = 0; x < width; ++x) {

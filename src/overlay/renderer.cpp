@@ -70,18 +70,20 @@ ScanPictures drawScans(const FrameDescription& frame, const Camera& camera) {
 void countElements(OverlayPicture& picture, std::uint32_t elementCount) {
   using Counts = std::array<std::uint64_t, 3>;
   std::vector<std::vector<Counts>> perWorker(workerCount());
-  parallelFor(picture.element.size(), std::size_t{1} << 18, [&](std::size_t first, std::size_t last, int worker) {
-    auto& counts = perWorker[worker];
-    counts.resize(elementCount + 1, Counts{});
-    for (std::size_t i = first; i < last; ++i) {
-      const std::uint32_t id = picture.element.data()[i];
-      const std::uint8_t state = picture.state.data()[i];
-      if (id != 0 && id <= elementCount && state < 3) ++counts[id][state];
-    }
-  });
+  parallelFor(picture.element.size(), std::size_t{1} << 18,
+              [&](std::size_t first, std::size_t last, int worker) {
+                auto& counts = perWorker[worker];
+                counts.resize(elementCount + 1, Counts{});
+                for (std::size_t i = first; i < last; ++i) {
+                  const std::uint32_t id = picture.element.data()[i];
+                  const std::uint8_t state = picture.state.data()[i];
+                  if (id != 0 && id <= elementCount && state < 3) ++counts[id][state];
+                }
+              });
   std::uint32_t layer = 0;
   for (std::uint32_t id = 1; id <= elementCount; ++id) {
-    while (layer + 1 < picture.firstElementOfLayer.size() && id - 1 >= picture.firstElementOfLayer[layer + 1]) ++layer;
+    while (layer + 1 < picture.firstElementOfLayer.size() && id - 1 >= picture.firstElementOfLayer[layer + 1])
+      ++layer;
     ElementPixels pixels{layer, id - 1 - picture.firstElementOfLayer[layer], 0, 0, 0};
     for (const auto& counts : perWorker) {
       if (counts.empty()) continue;
@@ -97,10 +99,12 @@ Result<void> checkFrame(const FrameDescription& frame, int width, int height) {
   if (frame.camera.width() <= 0 || frame.camera.height() <= 0)
     return fail("The frame has no camera", {}, "Give the frame a calibrated camera");
   if (!frame.cameraFromWorld.isFinite())
-    return fail("The frame's pose holds numbers that are not finite", {}, "Import the pose again, or refine it");
+    return fail("The frame's pose holds numbers that are not finite", {},
+                "Import the pose again, or refine it");
   if (width <= 0 || height <= 0 || width > kLargestEdgePx || height > kLargestEdgePx)
-    return fail("A picture of " + std::to_string(width) + " × " + std::to_string(height) + " pixels cannot be drawn",
-                {}, "Choose a size of 1 to " + std::to_string(kLargestEdgePx) + " pixels an edge");
+    return fail(
+        "A picture of " + std::to_string(width) + " × " + std::to_string(height) + " pixels cannot be drawn",
+        {}, "Choose a size of 1 to " + std::to_string(kLargestEdgePx) + " pixels an edge");
   return {};
 }
 
@@ -140,7 +144,9 @@ OverlayRenderer::OverlayRenderer(std::unique_ptr<OverlayDevice> device) : m_impl
 
 OverlayRenderer::~OverlayRenderer() = default;
 
-std::string OverlayRenderer::deviceName() const { return m_impl->device->name(); }
+std::string OverlayRenderer::deviceName() const {
+  return m_impl->device->name();
+}
 
 Result<OverlayPicture> OverlayRenderer::render(const FrameDescription& frame) {
   const int width = frame.width > 0 ? frame.width : frame.camera.width();

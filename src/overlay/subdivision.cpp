@@ -10,23 +10,29 @@ namespace alidade {
 
 namespace {
 
-constexpr int kDeepest = 18;         // halvings of one source edge
+constexpr int kDeepest = 18;  // halvings of one source edge
 constexpr int kPlanes = 5;
 
 /// Signed distance to a plane of the lens's frustum, not normalised; >= 0 inside.
 double planeDistance(const LensError& lens, const glm::dvec3& p, int plane) {
   switch (plane) {
-    case 0: return p.z - LensError::kNearM;
-    case 1: return p.x - lens.low().x * p.z;
-    case 2: return lens.high().x * p.z - p.x;
-    case 3: return p.y - lens.low().y * p.z;
-    default: return lens.high().y * p.z - p.y;
+    case 0:
+      return p.z - LensError::kNearM;
+    case 1:
+      return p.x - lens.low().x * p.z;
+    case 2:
+      return lens.high().x * p.z - p.x;
+    case 3:
+      return p.y - lens.low().y * p.z;
+    default:
+      return lens.high().y * p.z - p.y;
   }
 }
 
 /// The clip of a convex polygon by one plane (Sutherland and Hodgman 1974). The crossing is computed
 /// from the inner to the outer point, so that it does not depend on the direction of travel.
-void clipByPlane(const LensError& lens, int plane, std::vector<glm::dvec3>& polygon, std::vector<glm::dvec3>& spare) {
+void clipByPlane(const LensError& lens, int plane, std::vector<glm::dvec3>& polygon,
+                 std::vector<glm::dvec3>& spare) {
   spare.clear();
   for (std::size_t i = 0; i < polygon.size(); ++i) {
     const glm::dvec3& a = polygon[i];
@@ -53,7 +59,8 @@ double distanceToAxis2(const glm::dvec2& a, const glm::dvec2& b) {
 }
 
 /// An edge with an end outside the domain is halved until it is short against the domain's border.
-bool needsSplitAtBorder(const LensError& lens, const LensPoint& a, const LensPoint& b, bool insideA, bool insideB) {
+bool needsSplitAtBorder(const LensError& lens, const LensPoint& a, const LensPoint& b, bool insideA,
+                        bool insideB) {
   if (insideA && insideB) return lens.needsSplit(a, b);
   const glm::dvec2 d = b.n - a.n;
   const double longest = lens.radius() / 24;
@@ -100,7 +107,8 @@ LensPoint lensBorder(const LensError& lens, const LensPoint& inside, const LensP
   return border;
 }
 
-SurfaceSplitter::SurfaceSplitter(const LensError& lens, std::size_t budget) : m_lens(lens), m_budget(budget) {}
+SurfaceSplitter::SurfaceSplitter(const LensError& lens, std::size_t budget)
+    : m_lens(lens), m_budget(budget) {}
 
 void SurfaceSplitter::add(const std::array<glm::dvec3, 3>& triangle, std::uint32_t element) {
   unsigned any = 0, all = ~0u;
@@ -132,7 +140,8 @@ void SurfaceSplitter::split(const LensPoint& a, const LensPoint& b, const LensPo
   const bool whole = insideA && insideB && insideC;
   const bool exhausted = depth >= 2 * kDeepest || indices.size() / 3 >= m_budget;
   if (whole) {
-    const std::array<bool, 3> edges{m_lens.needsSplit(a, b), m_lens.needsSplit(b, c), m_lens.needsSplit(c, a)};
+    const std::array<bool, 3> edges{m_lens.needsSplit(a, b), m_lens.needsSplit(b, c),
+                                    m_lens.needsSplit(c, a)};
     if (exhausted || !(edges[0] || edges[1] || edges[2])) return emit(a, b, c);
     return splitAt({a, b, c}, edges, depth);
   }
@@ -145,7 +154,8 @@ void SurfaceSplitter::split(const LensPoint& a, const LensPoint& b, const LensPo
 }
 
 /// Halves the marked edges (0: ab, 1: bc, 2: ca) and goes on with the two to four pieces.
-void SurfaceSplitter::splitAt(const std::array<LensPoint, 3>& corners, const std::array<bool, 3>& edges, int depth) {
+void SurfaceSplitter::splitAt(const std::array<LensPoint, 3>& corners, const std::array<bool, 3>& edges,
+                              int depth) {
   const int count = edges[0] + edges[1] + edges[2];
   // Turned so that with one mark it is on ab, and with two the free edge is ca.
   int first = 0;

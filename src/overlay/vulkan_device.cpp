@@ -184,8 +184,8 @@ Result<void> VulkanOverlayDevice::ensureTargets(const DrawList& list) {
   const int w = list.width, h = list.height;
   if (!m_colour.image || m_colour.image.width() != w || m_colour.image.height() != h) {
     m_bindingsStale = true;
-    for (Target* target : {&m_faceColour, &m_faceElement, &m_faceDepth, &m_depthBuffer, &m_edgeCover, &m_edgeElement,
-                           &m_edgeDepth, &m_element, &m_depth, &m_state, &m_colour})
+    for (Target* target : {&m_faceColour, &m_faceElement, &m_faceDepth, &m_depthBuffer, &m_edgeCover,
+                           &m_edgeElement, &m_edgeDepth, &m_element, &m_depth, &m_state, &m_colour})
       if (auto made = target->make(*m_device, w, h); !made) return made;
   }
   const bool hasImage = list.image && !list.image->empty();
@@ -196,7 +196,8 @@ Result<void> VulkanOverlayDevice::ensureTargets(const DrawList& list) {
     return {};
   };
   if (hasImage || !m_image.image)
-    if (auto ok = ensure(m_image, GpuFormat::Rgba8, hasImage ? list.image->width() : 1, hasImage ? list.image->height() : 1);
+    if (auto ok = ensure(m_image, GpuFormat::Rgba8, hasImage ? list.image->width() : 1,
+                         hasImage ? list.image->height() : 1);
         !ok)
       return ok;
   if (auto ok = ensure(m_scanDepth, GpuFormat::R32Float, w, h); !ok) return ok;
@@ -210,12 +211,14 @@ Result<void> VulkanOverlayDevice::ensureEdgeIndices(std::size_t edges) {
   auto* index = reinterpret_cast<std::uint32_t*>(m_edgeIndices.buffer.data());
   m_edgeIndexCount = m_edgeIndices.buffer.size() / (6 * sizeof(std::uint32_t)) * 6;
   for (std::size_t edge = 0; edge < m_edgeIndexCount / 6; ++edge)
-    for (const std::uint32_t corner : {0u, 1u, 2u, 2u, 1u, 3u}) *index++ = static_cast<std::uint32_t>(4 * edge) + corner;
+    for (const std::uint32_t corner : {0u, 1u, 2u, 2u, 1u, 3u})
+      *index++ = static_cast<std::uint32_t>(4 * edge) + corner;
   return {};
 }
 
 Result<void> VulkanOverlayDevice::uploadLists(const DrawList& list) {
-  const auto put = [&](GrowingBuffer& buffer, const void* data, std::size_t bytes, bool isBound) -> Result<void> {
+  const auto put = [&](GrowingBuffer& buffer, const void* data, std::size_t bytes,
+                       bool isBound) -> Result<void> {
     auto replaced = buffer.reserve(*m_device, bytes);
     if (!replaced) return fail(replaced.error());
     if (isBound && *replaced) m_bindingsStale = true;
@@ -228,14 +231,17 @@ Result<void> VulkanOverlayDevice::uploadLists(const DrawList& list) {
   const FrameUniform uniform = frameUniform(list);
   if (auto ok = put(m_uniform, &uniform, sizeof uniform, true); !ok) return ok;
   if (auto ok = put(m_styles, styles.data(), styles.size() * sizeof(StyleUniform), true); !ok) return ok;
-  if (auto ok = put(m_vertices, list.surface.data(), list.surface.size() * sizeof(SurfaceVertex), false); !ok) return ok;
+  if (auto ok = put(m_vertices, list.surface.data(), list.surface.size() * sizeof(SurfaceVertex), false); !ok)
+    return ok;
   if (auto ok = put(m_indices, list.triangles.data(), list.triangles.size() * 4, false); !ok) return ok;
-  if (auto ok = put(m_edgeVertices, list.edges.data(), list.edges.size() * sizeof(EdgeVertex), true); !ok) return ok;
+  if (auto ok = put(m_edgeVertices, list.edges.data(), list.edges.size() * sizeof(EdgeVertex), true); !ok)
+    return ok;
   if (list.image && !list.image->empty())
     copyInParallel(m_image.staging.data(), list.image->data(), list.image->size() * sizeof(Rgba8));
   if (list.scanDepth) copyScanDepth(m_scanDepth.staging.data(), *list.scanDepth);
   if (list.pointColour)
-    copyInParallel(m_points.staging.data(), list.pointColour->data(), list.pointColour->size() * sizeof(Rgba8));
+    copyInParallel(m_points.staging.data(), list.pointColour->data(),
+                   list.pointColour->size() * sizeof(Rgba8));
   return ensureEdgeIndices(list.edges.size() / 2);
 }
 
@@ -250,7 +256,8 @@ Result<void> VulkanOverlayDevice::rebind() {
     return {};
   };
   if (auto ok = make(m_surfaceBindings, m_surface, {frame, styles}); !ok) return ok;
-  if (auto ok = make(m_edgeBindings, m_edge, {frame, styles, m_edgeVertices.buffer, m_scanDepth.image, m_faceDepth.image});
+  if (auto ok = make(m_edgeBindings, m_edge,
+                     {frame, styles, m_edgeVertices.buffer, m_scanDepth.image, m_faceDepth.image});
       !ok)
     return ok;
   if (auto ok = make(m_compositeBindings, m_composite,
@@ -315,7 +322,8 @@ OverlayDevice::Output VulkanOverlayDevice::collect(int width, int height) const 
   Output output{ColourImage(width, height), DepthImage(width, height), IdImage(width, height),
                 Image<std::uint8_t>(width, height)};
   const auto take = [](auto& image, const Target& target) {
-    copyInParallel(reinterpret_cast<std::byte*>(image.data()), target.result.data(), target.image.byteCount());
+    copyInParallel(reinterpret_cast<std::byte*>(image.data()), target.result.data(),
+                   target.image.byteCount());
   };
   take(output.colour, m_colour);
   take(output.designDepth, m_depth);
@@ -329,12 +337,14 @@ Result<OverlayDevice::Output> VulkanOverlayDevice::draw(const DrawList& list) {
     return !image || (image->width() == list.width && image->height() == list.height);
   };
   if (!fits(list.scanDepth) || !fits(list.pointColour))
-    return fail("The scan's pictures are not of the result's size", name(), "Draw them for the scaled camera");
+    return fail("The scan's pictures are not of the result's size", name(),
+                "Draw them for the scaled camera");
   m_device->reloadChangedShaders();
   if (auto ok = ensureTargets(list); !ok) return fail(ok.error());
   if (auto ok = uploadLists(list); !ok) return fail(ok.error());
   if (auto ok = rebind(); !ok) return fail(ok.error());
-  if (auto ok = m_device->run([&](GpuCommands& commands) { record(commands, list); }); !ok) return fail(ok.error());
+  if (auto ok = m_device->run([&](GpuCommands& commands) { record(commands, list); }); !ok)
+    return fail(ok.error());
   return collect(list.width, list.height);
 }
 

@@ -19,16 +19,19 @@ std::shared_ptr<const DesignModel> hallOf(int boxes) {
   model->origin = {402100, 5655050, 112};
   const int side = static_cast<int>(std::ceil(std::cbrt(boxes)));
   for (int n = 0; n < boxes; ++n) {
-    const glm::vec3 centre(n % side * 2.0f, n / side % side * 2.0f, static_cast<float>(n / (side * side)) * 1.5f);
+    const glm::vec3 centre(n % side * 2.0f, n / side % side * 2.0f,
+                           static_cast<float>(n / (side * side)) * 1.5f);
     DesignElement element;
-    element.colour = {static_cast<std::uint8_t>(80 + n % 150), static_cast<std::uint8_t>(90 + n * 7 % 140), 150, 255};
+    element.colour = {static_cast<std::uint8_t>(80 + n % 150), static_cast<std::uint8_t>(90 + n * 7 % 140),
+                      150, 255};
     element.firstIndex = static_cast<std::uint32_t>(model->triangles.size());
     element.firstEdge = static_cast<std::uint32_t>(model->edges.size());
     element.indexCount = 36;
     element.edgeCount = 12;
     const auto base = static_cast<std::uint32_t>(model->vertices.size());
     for (int i = 0; i < 8; ++i)
-      model->vertices.push_back(centre + glm::vec3(i & 1 ? 0.4f : -0.4f, i & 2 ? 0.4f : -0.4f, i & 4 ? 0.5f : -0.5f));
+      model->vertices.push_back(centre +
+                                glm::vec3(i & 1 ? 0.4f : -0.4f, i & 2 ? 0.4f : -0.4f, i & 4 ? 0.5f : -0.5f));
     for (const std::uint32_t i : {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
                                   2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5})
       model->triangles.push_back(base + i);
@@ -42,11 +45,12 @@ std::shared_ptr<const DesignModel> hallOf(int boxes) {
 
 FrameDescription hallFrame() {
   FrameDescription frame;
-  frame.camera = Camera(*Intrinsics::fromParameters(CameraModel::OpenCv5, 1920, 1080,
-                                                    {1150, 1150, 959.5, 539.5, -0.12, 0.03, 0.0005, -0.0004, -0.002}));
+  frame.camera = Camera(*Intrinsics::fromParameters(
+      CameraModel::OpenCv5, 1920, 1080, {1150, 1150, 959.5, 539.5, -0.12, 0.03, 0.0005, -0.0004, -0.002}));
   frame.designs.push_back({hallOf(8334), {}, {}, {}});
   const glm::dvec3 origin = frame.designs[0].model->origin;
-  frame.cameraFromWorld = RigidTransform::cameraLookingAt(origin + glm::dvec3(19, -26, 24), origin + glm::dvec3(19, 19, 12));
+  frame.cameraFromWorld =
+      RigidTransform::cameraLookingAt(origin + glm::dvec3(19, -26, 24), origin + glm::dvec3(19, 19, 12));
   frame.image = std::make_shared<ColourImage>(1920, 1080, Rgba8{120, 130, 110, 255});
   return frame;
 }
@@ -75,8 +79,14 @@ void overlayFrame(benchmark::State& state) {
   state.SetLabel((*device)->name());
 }
 
-BENCHMARK(overlayDrawList)->Name("overlay_draw_list_100k_triangles")->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(overlayFrame)->Name("overlay_frame_1080p_100k_triangles")->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(overlayDrawList)
+    ->Name("overlay_draw_list_100k_triangles")
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+BENCHMARK(overlayFrame)
+    ->Name("overlay_frame_1080p_100k_triangles")
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
 
 }  // namespace
 }  // namespace alidade

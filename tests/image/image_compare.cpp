@@ -25,15 +25,16 @@ QString pathIn(const char* folder, const std::string& name) {
 
 }  // namespace
 
-ImageComparison compareToBaseline(const ColourImage& picture, const std::string& name, const ImageTolerance& tolerance) {
+ImageComparison compareToBaseline(const ColourImage& picture, const std::string& name,
+                                  const ImageTolerance& tolerance) {
   ImageComparison result;
   if (const char* update = std::getenv("ALIDADE_UPDATE_BASELINES"); update && *update == '1') {
-    result.same = wrapped(picture).convertToFormat(QImage::Format_RGB888).save(pathIn(ALIDADE_BASELINE_DIR, name));
+    result.same =
+        wrapped(picture).convertToFormat(QImage::Format_RGB888).save(pathIn(ALIDADE_BASELINE_DIR, name));
     result.report = "baseline written";
     return result;
   }
-  const QImage baseline =
-      QImage(pathIn(ALIDADE_BASELINE_DIR, name)).convertToFormat(QImage::Format_RGBA8888);
+  const QImage baseline = QImage(pathIn(ALIDADE_BASELINE_DIR, name)).convertToFormat(QImage::Format_RGBA8888);
   if (baseline.width() != picture.width() || baseline.height() != picture.height()) {
     result.differing = 1;
     result.report = baseline.isNull() ? "there is no baseline " + name : "the baseline has another size";
@@ -61,7 +62,8 @@ ImageComparison compareToBaseline(const ColourImage& picture, const std::string&
   if (result.same) return result;
   wrapped(picture).save(pathIn(ALIDADE_IMAGE_DIFF_DIR, name));
   difference.save(pathIn(ALIDADE_IMAGE_DIFF_DIR, name + "-difference"));
-  result.report = std::to_string(count) + " pixels differ; see " + ALIDADE_IMAGE_DIFF_DIR + "/" + name + "-difference.png";
+  result.report = std::to_string(count) + " pixels differ; see " + ALIDADE_IMAGE_DIFF_DIR + "/" + name +
+                  "-difference.png";
   return result;
 }
 

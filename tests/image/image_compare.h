@@ -16,12 +16,13 @@ struct ImageComparison {
 };
 
 struct ImageTolerance {
-  int perChannel = 12;        ///< of 255: drivers round and rasterise edges differently
-  double fraction = 0.004;    ///< of the pixels
+  int perChannel = 12;      ///< of 255: drivers round and rasterise edges differently
+  double fraction = 0.004;  ///< of the pixels
 };
 
 /// Holds a picture to the baseline of that name. Where they differ, the picture and the difference (bright
 /// where it is large) are saved in the build folder. ALIDADE_UPDATE_BASELINES=1 writes the baseline.
-ImageComparison compareToBaseline(const ColourImage& picture, const std::string& name, const ImageTolerance& tolerance = {});
+ImageComparison compareToBaseline(const ColourImage& picture, const std::string& name,
+                                  const ImageTolerance& tolerance = {});
 
 }  // namespace alidade

@@ -23,7 +23,8 @@ FrameDescription smallScene() {
   frame.cameraFromWorld = poseBefore(glm::dvec3(4.0e5, 5.6e6, 100));
   frame.image = stripedPicture(kWidth, kHeight);
   BoxModel model({4.0e5, 5.6e6, 100});
-  model.box({-5, 0, 0.3f}, {2.2f, 2, 4}, {210, 90, 60, 255}).box({-0.5f, 0, 0}, {3, 2, 3}, {90, 160, 220, 255});
+  model.box({-5, 0, 0.3f}, {2.2f, 2, 4}, {210, 90, 60, 255})
+      .box({-0.5f, 0, 0}, {3, 2, 3}, {90, 160, 220, 255});
   model.box({4.5f, 1, 0.5f}, {3, 2, 4}, {120, 200, 120, 255});
   frame.designs.push_back({model.made(), {}, {}, {}});
   return frame;

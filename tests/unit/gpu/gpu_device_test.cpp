@@ -40,13 +40,13 @@ T* as(GpuBuffer& buffer) {
   return reinterpret_cast<T*>(buffer.data());
 }
 
-
 /// Directions over the whole of what the picture sees, near and far.
 std::vector<glm::vec4> pointsSeenBy(const Camera& camera) {
   std::vector<glm::vec4> points;
   for (int row = 0; row <= 36; ++row) {
     for (int column = 0; column <= 54; ++column) {
-      const auto ray = camera.unproject({column * (camera.width() - 1) / 54.0, row * (camera.height() - 1) / 36.0});
+      const auto ray =
+          camera.unproject({column * (camera.width() - 1) / 54.0, row * (camera.height() - 1) / 36.0});
       if (!ray) continue;
       const double z = 0.5 + (row * 7 + column * 13) % 100;
       points.emplace_back(glm::vec3(*ray * z), 1.0f);
@@ -80,7 +80,9 @@ Result<std::vector<glm::vec2>> projectOnDevice(GpuDevice& device, const Camera& 
 
 }  // namespace
 
-TEST_F(GpuDeviceTest, NamesItsDevice) { EXPECT_FALSE(device->name().empty()); }
+TEST_F(GpuDeviceTest, NamesItsDevice) {
+  EXPECT_FALSE(device->name().empty());
+}
 
 TEST_F(GpuDeviceTest, ShadersBendPointsAsTheCameraDoesForEveryModel) {
   for (const Camera& camera : camerasOfEveryModel()) {
@@ -147,7 +149,8 @@ TEST(ShaderLibrary, SaysWhereAMissingOrDamagedShaderWasLookedFor) {
   ASSERT_FALSE(missing);
   EXPECT_NE(missing.error().text().find("share/alidade/shaders"), std::string::npos);
 
-  const auto folder = std::filesystem::temp_directory_path() / ("alidade-shaders-" + std::to_string(getpid()));
+  const auto folder =
+      std::filesystem::temp_directory_path() / ("alidade-shaders-" + std::to_string(getpid()));
   std::filesystem::create_directories(folder);
   std::ofstream(folder / "broken.frag.spv") << "this is no SPIR-V, only words";
   setenv("ALIDADE_SHADER_DIR", folder.c_str(), 1);

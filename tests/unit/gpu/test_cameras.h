@@ -24,13 +24,14 @@ inline std::vector<Camera> camerasOfEveryModel() {
       {CameraModel::OpenCv4, {f, g, cx, cy, -0.26, 0.1, 8e-4, -5e-4}},
       {CameraModel::OpenCv5, {f, g, cx, cy, -0.27, 0.11, -6e-4, 4e-4, -0.021}},
       {CameraModel::OpenCv8, {f, g, cx, cy, 0.21, -0.14, 7e-4, 3e-4, 0.02, 0.48, -0.12, 0.01}},
-      {CameraModel::OpenCv12, {f, g, cx, cy, 0.21, -0.14, 7e-4, 3e-4, 0.02, 0.48, -0.12, 0.01, 2e-3, -1e-3, 1e-3, 5e-4}},
+      {CameraModel::OpenCv12,
+       {f, g, cx, cy, 0.21, -0.14, 7e-4, 3e-4, 0.02, 0.48, -0.12, 0.01, 2e-3, -1e-3, 1e-3, 5e-4}},
       {CameraModel::OpenCv14,
-       {f, g, cx, cy, 0.21, -0.14, 7e-4, 3e-4, 0.02, 0.48, -0.12, 0.01, 2e-3, -1e-3, 1e-3, 5e-4, 0.02, -0.015}},
+       {f, g, cx, cy, 0.21, -0.14, 7e-4, 3e-4, 0.02, 0.48, -0.12, 0.01, 2e-3, -1e-3, 1e-3, 5e-4, 0.02,
+        -0.015}},
       {CameraModel::OpenCvFisheye, {1800, 1805, cx, cy, -0.02, 0.006, -0.003, 0.0004}},
-      {CameraModel::BrownHighOrder,
-       {f, g, cx, cy, -0.2, 0.08, -0.02, 0.003, -2e-4, 1e-5, 0.02, -0.01, 0.002, 5e-4, -4e-4, 0.1, 0.02, 0.01, 0.001,
-        8e-4, -6e-4}},
+      {CameraModel::BrownHighOrder, {f,     g,     cx,   cy,    -0.2, 0.08, -0.02, 0.003, -2e-4, 1e-5, 0.02,
+                                     -0.01, 0.002, 5e-4, -4e-4, 0.1,  0.02, 0.01,  0.001, 8e-4,  -6e-4}},
   };
   std::vector<Camera> cameras;
   for (const auto& [model, parameters] : lenses) {
@@ -44,6 +45,8 @@ inline std::vector<Camera> camerasOfEveryModel() {
   return cameras;
 }
 
-inline std::string nameOf(const Camera& camera) { return std::string(cameraModelName(camera.intrinsics().model)); }
+inline std::string nameOf(const Camera& camera) {
+  return std::string(cameraModelName(camera.intrinsics().model));
+}
 
 }  // namespace alidade

@@ -20,7 +20,8 @@ namespace {
 
 const glm::dvec3 kFarAway(1.0e7 + 0.123, 9.87e6 - 0.321, 512.5);
 
-FrameDescription frameOf(const Camera& camera, const glm::dvec3& origin, std::shared_ptr<const DesignModel> model) {
+FrameDescription frameOf(const Camera& camera, const glm::dvec3& origin,
+                         std::shared_ptr<const DesignModel> model) {
   FrameDescription frame;
   frame.camera = camera;
   frame.cameraFromWorld = poseBefore(origin);
@@ -50,8 +51,8 @@ double distanceToPolyline(const glm::dvec2& p, const std::vector<glm::dvec2>& li
   return best;
 }
 
-/// Largest distance from exact, double-precision points on the design's edges inside the picture to what is drawn of
-/// that element, as straight lines between the drawn vertices' exact pixels.
+/// Largest distance from exact, double-precision points on the design's edges inside the picture to what is
+/// drawn of that element, as straight lines between the drawn vertices' exact pixels.
 double worstEdgeError(const FrameDescription& frame, const DrawList& list, int& checked) {
   const DesignModel& model = *frame.designs[0].model;
   const Camera& camera = list.camera;
@@ -77,7 +78,9 @@ double worstEdgeError(const FrameDescription& frame, const DrawList& list, int& 
 }
 
 using Position = std::tuple<float, float, float>;
-Position key(const glm::vec3& p) { return {p.x, p.y, p.z}; }
+Position key(const glm::vec3& p) {
+  return {p.x, p.y, p.z};
+}
 
 }  // namespace
 
@@ -137,7 +140,9 @@ TEST(DrawList, NeighboursSplitTheirSharedEdgesIdentically) {
                  key(list.surface[list.triangles[i + (k + 1) % 3]].pInCamera)}];
     int open = 0;
     for (const auto& [edge, count] : edges)
-      if (const auto back = edges.find({edge.second, edge.first}); back == edges.end() || back->second != count) ++open;
+      if (const auto back = edges.find({edge.second, edge.first});
+          back == edges.end() || back->second != count)
+        ++open;
     EXPECT_EQ(open, 0) << nameOf(camera) << ": cracks in a closed box";
   }
 }
@@ -149,7 +154,7 @@ TEST(DrawList, NothingIsDrawnBeyondTheFoldBackRadius) {
   const Camera camera(*in);
   ASSERT_NEAR(camera.foldBackRadius(), 1.22, 0.01);
   BoxModel model(glm::dvec3(0));
-  model.box({0, 40, 0}, {400, 1, 400}, {200, 0, 0, 255});   // a wall across the whole view and far beyond
+  model.box({0, 40, 0}, {400, 1, 400}, {200, 0, 0, 255});      // a wall across the whole view and far beyond
   model.box({0, -8, -2}, {200, 200, 0.1f}, {0, 200, 0, 255});  // a floor that passes under the camera
   const FrameDescription frame = frameOf(camera, glm::dvec3(0), model.made());
   const DrawList list = buildDrawList(frame, camera);

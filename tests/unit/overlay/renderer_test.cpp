@@ -27,12 +27,13 @@ void keep(const ColourImage& picture, const std::string& name) {
   const char* folder = std::getenv("ALIDADE_TEST_PICTURES");
   if (!folder || picture.empty()) return;
   std::filesystem::create_directories(folder);
-  QImage(reinterpret_cast<const uchar*>(picture.data()), picture.width(), picture.height(), 4 * picture.width(),
-         QImage::Format_RGBA8888)
+  QImage(reinterpret_cast<const uchar*>(picture.data()), picture.width(), picture.height(),
+         4 * picture.width(), QImage::Format_RGBA8888)
       .save(QString::fromStdString(std::string(folder) + "/" + name + ".png"));
 }
 
-/// A scan known in closed form: a wall at 8 m on the left third, nothing known in the middle third, sky on the right.
+/// A scan known in closed form: a wall at 8 m on the left third, nothing known in the middle third, sky on
+/// the right.
 DepthImage analyticScan(int width, int height) {
   DepthImage depth(width, height);
   for (int y = 0; y < height; ++y)
@@ -43,7 +44,8 @@ DepthImage analyticScan(int width, int height) {
   return depth;
 }
 
-FrameDescription boxesFrame(const glm::dvec3& origin = glm::dvec3(0), int width = kWidth, int height = kHeight) {
+FrameDescription boxesFrame(const glm::dvec3& origin = glm::dvec3(0), int width = kWidth,
+                            int height = kHeight) {
   FrameDescription frame;
   frame.camera = wideAngleCamera(width, height);
   frame.cameraFromWorld = poseBefore(origin);
@@ -61,7 +63,8 @@ class DeviceTest : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     s_sink = addLogSink([](LogLevel level, const std::string& message) {
-      if (level >= LogLevel::Warning && message.find("Validation") != std::string::npos) ++s_validationMessages;
+      if (level >= LogLevel::Warning && message.find("Validation") != std::string::npos)
+        ++s_validationMessages;
     });
     auto made = createVulkanDevice();
     ASSERT_TRUE(made) << made.error().text();
@@ -74,7 +77,8 @@ class DeviceTest : public testing::Test {
     EXPECT_EQ(s_validationMessages, 0) << "the validation layer objects; see the log above";
   }
   /// The frame's design before the analytic scan, without renderer and points.
-  OverlayDevice::Output draw(const FrameDescription& frame, const DepthImage* scan, const ColourImage* points = nullptr) {
+  OverlayDevice::Output draw(const FrameDescription& frame, const DepthImage* scan,
+                             const ColourImage* points = nullptr) {
     DrawList list = buildDrawList(frame, frame.camera);
     list.image = frame.image.get();
     list.scanDepth = scan;
@@ -115,7 +119,8 @@ TEST_F(DeviceTest, EveryPixelIsVisibleHiddenOrUnknownAsTheScanSays) {
         continue;
       }
       const double z = out.designDepth.at(x, y);
-      ASSERT_EQ(state, visibilityAt(scan, {x, y}, z, frame.display.depthToleranceM)) << x << " " << y << " " << z;
+      ASSERT_EQ(state, visibilityAt(scan, {x, y}, z, frame.display.depthToleranceM))
+          << x << " " << y << " " << z;
       ASSERT_TRUE(x < 2 * kWidth / 3 || state == Visibility::Visible);
     }
   for (const int count : counts) EXPECT_GT(count, 1000);
@@ -132,7 +137,8 @@ TEST_F(DeviceTest, DepthAndElementAreThoseOfTheNearestFaceAlongTheExactRay) {
       const auto ray = frame.camera.unproject({x, y});
       ASSERT_TRUE(ray);
       // A tenth of a pixel aside: how fast the depth changes there.
-      const auto aside = frame.camera.unproject({x + 0.1, y + 0.1}), other = frame.camera.unproject({x + 0.1, y - 0.1});
+      const auto aside = frame.camera.unproject({x + 0.1, y + 0.1}),
+                 other = frame.camera.unproject({x + 0.1, y - 0.1});
       ASSERT_TRUE(aside && other);
       double nearest = std::numeric_limits<double>::infinity(), allowed = 0;
       std::uint32_t owner = 0;
@@ -215,7 +221,8 @@ TEST_F(DeviceTest, PassesCanBeSwitchedOff) {
   FrameDescription frame = boxesFrame();
   frame.display.designPass = false;
   const auto imageAlone = draw(frame, nullptr);
-  EXPECT_EQ(differingPixels(imageAlone.colour, *frame.image, 1), 0u) << "the image alone is the image, bit for bit";
+  EXPECT_EQ(differingPixels(imageAlone.colour, *frame.image, 1), 0u)
+      << "the image alone is the image, bit for bit";
   for (std::size_t i = 0; i < imageAlone.element.size(); ++i) ASSERT_EQ(imageAlone.element.data()[i], 0u);
 
   frame = boxesFrame();
@@ -293,7 +300,8 @@ TEST(OverlayRenderer, GivesAPictureWithCountsMarksAndNames) {
   FrameDescription frame = boxesFrame(glm::dvec3(2.0e6, 5.0e5, 300), 1280, 800);
   const glm::dvec3 origin = frame.designs[0].model->origin;
   for (int i = 0; i < 6; ++i)
-    frame.stakePoints.push_back({"S" + std::to_string(100 + i), origin + glm::dvec3(i * 1.2 - 3, -2 - 0.4 * i, -1.4), "AXIS", 0.25});
+    frame.stakePoints.push_back(
+        {"S" + std::to_string(100 + i), origin + glm::dvec3(i * 1.2 - 3, -2 - 0.4 * i, -1.4), "AXIS", 0.25});
   frame.selectedStakePoints = {"S102"};
   Annotation note;
   note.id = {7};
@@ -334,7 +342,8 @@ TEST(OverlayRenderer, GivesAPictureWithCountsMarksAndNames) {
   EXPECT_EQ(annotationAt(frame, scaled, {950, 590}), AnnotationId{});
   const auto tip = scaled.project(frame.cameraFromWorld * note.world);
   ASSERT_TRUE(tip);
-  EXPECT_EQ(annotationAt(frame, scaled, *tip + glm::dvec2(140, -120) * 0.75 + glm::dvec2(20, 0)), AnnotationId{7});
+  EXPECT_EQ(annotationAt(frame, scaled, *tip + glm::dvec2(140, -120) * 0.75 + glm::dvec2(20, 0)),
+            AnnotationId{7});
 
   frame.stakePoints.clear();
   frame.annotations.clear();

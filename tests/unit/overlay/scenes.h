@@ -27,7 +27,8 @@ class BoxModel {
     element.edgeCount = 12;
     const auto base = static_cast<std::uint32_t>(m_model.vertices.size());
     for (int i = 0; i < 8; ++i)
-      m_model.vertices.push_back(centre + 0.5f * size * glm::vec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1));
+      m_model.vertices.push_back(centre +
+                                 0.5f * size * glm::vec3(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1));
     for (const std::uint32_t i : {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
                                   2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5})
       m_model.triangles.push_back(base + i);
@@ -69,7 +70,8 @@ inline std::shared_ptr<const ColourImage> stripedPicture(int width, int height) 
   for (int y = 0; y < height; ++y)
     for (int x = 0; x < width; ++x) {
       const auto v = static_cast<std::uint8_t>(40 + 180 * ((x * 6 / width) % 2) + (y * 20) / height);
-      picture->at(x, y) = {v, static_cast<std::uint8_t>(v * 15 / 16), static_cast<std::uint8_t>(v * 13 / 16), 255};
+      picture->at(x, y) = {v, static_cast<std::uint8_t>(v * 15 / 16), static_cast<std::uint8_t>(v * 13 / 16),
+                           255};
     }
   return picture;
 }
