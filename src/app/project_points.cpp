@@ -28,10 +28,8 @@ Result<std::vector<ProjectedPoint>> projectPoints(const Project& project, const 
 
   DepthImage occlusion;
   if (!description->clouds.empty() && project.display.depthPass) {
-    SelectionOptions options;
     std::vector<SplatLayer> layers;
-    for (const auto& cloud : description->clouds)
-      layers.push_back({cloud, select(*cloud, small, description->cameraFromWorld, options)});
+    for (const auto& cloud : description->clouds) layers.push_back({cloud, selectAll(*cloud, small, description->cameraFromWorld)});
     occlusion = occlusionDepth(layers, small, description->cameraFromWorld).depth;
   }
 

@@ -36,33 +36,32 @@ SelectionOptions selectionOptions(const DisplaySettings& display) {
   return options;
 }
 
+/// The density slider chooses which points are *shown*; what hides the design is judged with every
+/// point in view, so that thinning the display never changes what is visible.
 ScanPictures drawScans(const FrameDescription& frame, const Camera& camera) {
   ScanPictures scans;
-  const SelectionOptions options = selectionOptions(frame.display);
-  std::vector<SplatLayer> layers;
-  std::uint64_t selected = 0;
+  std::vector<SplatLayer> shown, occluders;
+  bool any = false;
   for (const auto& store : frame.clouds) {
     if (!store) continue;
     scans.total += store->pointCount();
-    layers.push_back({store, select(*store, camera, frame.cameraFromWorld, options)});
-    selected += layers.back().selection.pointCount;
+    shown.push_back({store, select(*store, camera, frame.cameraFromWorld, selectionOptions(frame.display))});
+    scans.drawn += shown.back().selection.pointCount;
+    occluders.push_back({store, selectAll(*store, camera, frame.cameraFromWorld)});
+    any = any || occluders.back().selection.pointCount > 0;
   }
-  if (selected == 0) {
+  if (!any) {
     scans.depth = DepthImage(camera.width(), camera.height(), std::numeric_limits<float>::quiet_NaN());
     return scans;
   }
   // Also with the depth pass off: the read-out under the cursor stands on it.
-  OcclusionDepth occlusion = occlusionDepth(layers, camera, frame.cameraFromWorld);
-  scans.depth = std::move(occlusion.depth);
-  scans.drawn = occlusion.pointsDrawn;
+  scans.depth = occlusionDepth(occluders, camera, frame.cameraFromWorld).depth;
   if (!frame.display.pointPass) return scans;
   SplatOptions splatting;
   splatting.colour = true;
   splatting.pointSize = frame.display.pointSize;
   splatting.round = frame.display.roundPoints;
-  SplatImages splats = splat(layers, camera, frame.cameraFromWorld, splatting);
-  scans.colour = std::move(splats.colour);
-  scans.drawn = std::max(scans.drawn, splats.drawn);
+  scans.colour = splat(shown, camera, frame.cameraFromWorld, splatting).colour;
   return scans;
 }
 

@@ -23,7 +23,7 @@ namespace alidade {
 struct SourceFile {
   std::string path;        ///< absolute in memory; relative to the project in the store
   std::uint64_t size = 0;  ///< bytes
-  std::string hash;        ///< see io/source_check.h; empty where not taken yet
+  std::string hash;        ///< see io/project_store.h; empty where not taken yet
 };
 
 struct Scan {
