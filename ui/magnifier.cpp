@@ -114,10 +114,10 @@ void paintMagnifier(OverlayView& view, QPainter& painter) {
   painter.restore();
 }
 
-void paintMeasurements(OverlayView& view, QPainter& painter, const Measurements& measurements) {
+void paintDistances(OverlayView& view, QPainter& painter, const MeasuredDistances& measurements) {
   painter.setFont(bodyFont());
   const QColor fill(120, 230, 255);
-  for (const Measurement& m : measurements) {
+  for (const MeasuredDistance& m : measurements) {
     const auto a = view.probe().project(m.from), b = view.probe().project(m.to);
     if (!a || !b) continue;
     const QPointF pa = view.viewFromRaw(*a), pb = view.viewFromRaw(*b);

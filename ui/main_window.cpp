@@ -45,7 +45,7 @@ constexpr int kLayoutVersion = 1;
 }  // namespace
 
 MainWindow::MainWindow(QWidget* parent)
-    : QMainWindow(parent), m_session(std::make_unique<Session>()), m_measurements(std::make_shared<Measurements>()) {
+    : QMainWindow(parent), m_session(std::make_unique<Session>()), m_measurements(std::make_shared<MeasuredDistances>()) {
   setObjectName(QStringLiteral("mainWindow"));
   setAcceptDrops(true);
   setDockNestingEnabled(true);

@@ -121,7 +121,7 @@ class MainWindow : public QMainWindow {
   QList<QDockWidget*> m_docks;
   QDockWidget *m_projectDock, *m_propertiesDock, *m_displayDock, *m_resectionDock, *m_messageDock;
   QMenu* m_recentMenu;
-  std::shared_ptr<Measurements> m_measurements;
+  std::shared_ptr<MeasuredDistances> m_measurements;
   bool m_workspaceShown = false;
 };
 

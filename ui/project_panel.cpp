@@ -57,6 +57,7 @@ ProjectPanel::ProjectPanel(Session& session, ProjectTreeModel& model, QWidget* p
   connect(m_tree, &QTreeView::customContextMenuRequested, this,
           [this](const QPoint& p) { emit contextMenuWanted(m_tree->viewport()->mapToGlobal(p)); });
   connect(&session, &Session::selectionChanged, this, &ProjectPanel::followSelection);
+  connect(&session, &Session::projectOpened, this, [this] { m_first = true; });
 }
 
 void ProjectPanel::chosen(const QModelIndex& index) {

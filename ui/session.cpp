@@ -75,6 +75,7 @@ void Session::setProject(Project project, bool unsaved) {
   const auto& frames = m_project->frames;
   const auto posed = std::find_if(frames.begin(), frames.end(), [](const Frame& f) { return f.cameraFromWorld; });
   m_frame = posed != frames.end() ? posed->id : frames.empty() ? FrameId{} : frames.front().id;
+  emit projectOpened();
   emit structureChanged();
   emit projectChanged();
   emit dataChanged();

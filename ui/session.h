@@ -92,6 +92,7 @@ class Session : public QObject {
   void requestRender();
 
  signals:
+  void projectOpened();     ///< before anything else of a new project is told
   void projectChanged();
   void structureChanged();  ///< another project, or sources came or went
   void dataChanged();

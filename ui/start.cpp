@@ -5,6 +5,12 @@
 
 #include <QCoreApplication>
 #include <QSurfaceFormat>
+#include <QtGlobal>
+
+/// A static library's resources are dropped by the linker unless someone asks for them.
+static void loadResources() {
+  Q_INIT_RESOURCE(window);
+}
 
 namespace alidade {
 
@@ -21,6 +27,7 @@ void prepareGraphics() {
 }
 
 void nameApplication() {
+  loadResources();
   QCoreApplication::setOrganizationName(QStringLiteral("Alidade"));
   QCoreApplication::setApplicationName(QStringLiteral("alidade"));
   QCoreApplication::setApplicationVersion(QStringLiteral(ALIDADE_VERSION));

@@ -38,17 +38,17 @@ class ViewTool {
 };
 
 /// A measured distance between two scanned points, world metres.
-struct Measurement {
+struct MeasuredDistance {
   glm::dvec3 from{0}, to{0};
   std::optional<double> uncertaintyM;
 };
-using Measurements = std::vector<Measurement>;
+using MeasuredDistances = std::vector<MeasuredDistance>;
 
 /// Selects what is under the cursor; drags annotations; a double click edits their text.
 std::unique_ptr<ViewTool> makeSelectTool();
 /// Magnifier and scan depth; a click reports the point.
 std::unique_ptr<ViewTool> makePickTool();
-std::unique_ptr<ViewTool> makeMeasureTool(std::shared_ptr<Measurements> measurements);
+std::unique_ptr<ViewTool> makeMeasureTool(std::shared_ptr<MeasuredDistances> measurements);
 std::unique_ptr<ViewTool> makeAnnotateTool(AnnotationKind kind);
 /// One click with the magnifier. `wantsScan`: only where the scan supports the pixel.
 std::unique_ptr<ViewTool> makePointTool(
@@ -59,6 +59,6 @@ std::unique_ptr<ViewTool> makePointTool(
 /// The magnifier beside the cursor: the raw picture enlarged, a sub-pixel mark, the scan's depth along
 /// the row beneath.
 void paintMagnifier(OverlayView& view, QPainter& painter);
-void paintMeasurements(OverlayView& view, QPainter& painter, const Measurements& measurements);
+void paintDistances(OverlayView& view, QPainter& painter, const MeasuredDistances& measurements);
 
 }  // namespace alidade

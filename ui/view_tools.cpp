@@ -149,7 +149,7 @@ class PickTool : public ViewTool {
 
 class MeasureTool : public ViewTool {
  public:
-  explicit MeasureTool(std::shared_ptr<Measurements> measurements) : m_measurements(std::move(measurements)) {}
+  explicit MeasureTool(std::shared_ptr<MeasuredDistances> measurements) : m_measurements(std::move(measurements)) {}
   QString hint() const override {
     return m_first ? OverlayView::tr("Measure: click the second point. Esc starts again")
                    : OverlayView::tr("Measure: click the first point on the scan. Esc leaves");
@@ -164,7 +164,7 @@ class MeasureTool : public ViewTool {
       m_first = readout;
       return;
     }
-    Measurement m{*m_first->world, *readout.world, std::nullopt};
+    MeasuredDistance m{*m_first->world, *readout.world, std::nullopt};
     if (m_first->uncertaintyM && readout.uncertaintyM)
       m.uncertaintyM = std::hypot(*m_first->uncertaintyM, *readout.uncertaintyM);
     m_measurements->push_back(m);
@@ -174,7 +174,7 @@ class MeasureTool : public ViewTool {
             .arg(QString::number(glm::length(m.to - m.from), 'f', 3), formatWorld(m.from), formatWorld(m.to)));
   }
   void paint(OverlayView& view, QPainter& painter) override {
-    paintMeasurements(view, painter, *m_measurements);
+    paintDistances(view, painter, *m_measurements);
     if (m_first && view.cursorRaw()) {
       if (const auto raw = view.probe().project(*m_first->world)) {
         const QPointF a = view.viewFromRaw(*raw), b = view.viewFromRaw(*view.cursorRaw());
@@ -190,7 +190,7 @@ class MeasureTool : public ViewTool {
   bool escape() override { return std::exchange(m_first, std::nullopt).has_value(); }
 
  private:
-  std::shared_ptr<Measurements> m_measurements;
+  std::shared_ptr<MeasuredDistances> m_measurements;
   std::optional<CursorReadout> m_first;
 };
 
@@ -289,7 +289,7 @@ std::unique_ptr<ViewTool> makeSelectTool() {
 std::unique_ptr<ViewTool> makePickTool() {
   return std::make_unique<PickTool>();
 }
-std::unique_ptr<ViewTool> makeMeasureTool(std::shared_ptr<Measurements> measurements) {
+std::unique_ptr<ViewTool> makeMeasureTool(std::shared_ptr<MeasuredDistances> measurements) {
   return std::make_unique<MeasureTool>(std::move(measurements));
 }
 std::unique_ptr<ViewTool> makeAnnotateTool(AnnotationKind kind) {

@@ -48,7 +48,7 @@ std::span<const std::array<std::uint32_t, 2>> edgesOfElement(const DesignModel& 
 
 }  // namespace
 
-DesignLayer::DesignLayer(vtkRenderer* renderer)
+SceneDesignLayer::SceneDesignLayer(vtkRenderer* renderer)
     : m_renderer(renderer),
       m_selectedFaces(makeActor(kSelectionColour, true)),
       m_selectedEdges(makeActor({1.0, 0.85, 0.4}, false)) {
@@ -58,16 +58,16 @@ DesignLayer::DesignLayer(vtkRenderer* renderer)
   m_renderer->AddActor(m_selectedEdges.actor);
 }
 
-DesignLayer::~DesignLayer() = default;
+SceneDesignLayer::~SceneDesignLayer() = default;
 
-void DesignLayer::clearParts() {
+void SceneDesignLayer::clearParts() {
   for (const Part& part : m_parts)
     for (const LitActor& each : {part.opaque, part.clear, part.edges}) m_renderer->RemoveActor(each.actor);
   m_parts.clear();
   m_bounds = Bounds();
 }
 
-void DesignLayer::build(const glm::dvec3& origin) {
+void SceneDesignLayer::build(const glm::dvec3& origin) {
   m_origin = origin;
   clearParts();
   for (const SceneDesign& design : m_designs)
@@ -76,7 +76,7 @@ void DesignLayer::build(const glm::dvec3& origin) {
   buildSelection();
 }
 
-void DesignLayer::addPart(const SceneDesign& design) {
+void SceneDesignLayer::addPart(const SceneDesign& design) {
   const DesignModel& model = *design.model;
   const std::vector<glm::vec3> local = localVertices(model, m_origin);
   Part part;
@@ -121,13 +121,13 @@ void DesignLayer::addPart(const SceneDesign& design) {
   m_parts.push_back(std::move(part));
 }
 
-void DesignLayer::select(DesignId design, int element) {
+void SceneDesignLayer::select(DesignId design, int element) {
   m_selectedDesign = design;
   m_selectedElement = element;
   buildSelection();
 }
 
-void DesignLayer::buildSelection() {
+void SceneDesignLayer::buildSelection() {
   std::vector<glm::vec3> local;
   std::span<const std::uint32_t> triangles;
   std::span<const std::array<std::uint32_t, 2>> edges;
@@ -145,13 +145,13 @@ void DesignLayer::buildSelection() {
   m_selectedEdges.mapper->SetInputData(linesOf(local, edges));
 }
 
-void DesignLayer::setLineScale(double devicePixelRatio) {
+void SceneDesignLayer::setLineScale(double devicePixelRatio) {
   m_lineScale = devicePixelRatio;
   for (const Part& part : m_parts) part.edges.actor->GetProperty()->SetLineWidth(static_cast<float>(devicePixelRatio));
   m_selectedEdges.actor->GetProperty()->SetLineWidth(static_cast<float>(2.5 * devicePixelRatio));
 }
 
-std::optional<LayerHit> DesignLayer::hit(const ViewCamera& camera, const glm::dvec2& px) const {
+std::optional<LayerHit> SceneDesignLayer::hit(const ViewCamera& camera, const glm::dvec2& px) const {
   const ViewRay ray = camera.rayThrough(px);
   const glm::dvec3 from = ray.origin - m_origin;
   const double reach = m_bounds.empty() ? 0.0 : glm::length(ray.origin - m_bounds.centre()) + m_bounds.diagonal();

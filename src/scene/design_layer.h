@@ -15,10 +15,10 @@ namespace alidade {
 
 /// The designs of the 3D view: faces and edges of the visible elements, and the selected element
 /// drawn over them.
-class DesignLayer {
+class SceneDesignLayer {
  public:
-  explicit DesignLayer(vtkRenderer* renderer);
-  ~DesignLayer();
+  explicit SceneDesignLayer(vtkRenderer* renderer);
+  ~SceneDesignLayer();
 
   void set(const std::vector<SceneDesign>& designs) { m_designs = designs; }
   void build(const glm::dvec3& origin);

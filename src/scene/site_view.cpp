@@ -39,7 +39,7 @@ struct SiteView::Impl {
   GlTarget target;
   vtkSmartPointer<vtkRenderer> renderer = vtkSmartPointer<vtkRenderer>::New();
   CloudLayer clouds{renderer};
-  DesignLayer designs{renderer};
+  SceneDesignLayer designs{renderer};
   FrameLayer frames{renderer};
   StakeLayer stakes{renderer};
   ViewCamera camera;
