@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 
@@ -13,6 +14,7 @@
 #include <unistd.h>
 
 #include "app/jobs.h"
+#include "io/picture_file.h"
 #include "io/project_store.h"
 
 namespace alidade {
@@ -54,19 +56,32 @@ struct Score {
   double share(std::uint64_t part) const { return 100.0 * static_cast<double>(part) / static_cast<double>(all()); }
 };
 
-void compare(const OverlayPicture& ours, const Image<std::uint8_t>& truth, const DepthImage& world,
-             const DepthImage& design, Score& score) {
+/// Returns the picture of it: green right, red wrongly hidden, blue wrongly visible, yellow unknown.
+ColourImage compare(const OverlayPicture& ours, const Image<std::uint8_t>& truth, const DepthImage& world,
+                    const DepthImage& design, Score& score) {
+  ColourImage difference = ours.colour;
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) {
       if (truth.at(x, y) == 0 || nearDepthEdge(world, design, x, y)) continue;
       const auto wanted = truth.at(x, y) == 1 ? Visibility::Visible : Visibility::Hidden;
       const auto got = static_cast<Visibility>(ours.state.at(x, y));
-      if (got == wanted) ++score.right;
-      else if (got == Visibility::Unknown) ++score.unknown;
-      else if (got == Visibility::Outside) ++score.missing;
-      else ++score.wrong;
+      Rgba8& mark = difference.at(x, y);
+      if (got == wanted) {
+        ++score.right;
+        mark.g = 255;
+      } else if (got == Visibility::Unknown) {
+        ++score.unknown;
+        mark = {255, 230, 0, 255};
+      } else if (got == Visibility::Outside) {
+        ++score.missing;
+        mark = {255, 0, 255, 255};
+      } else {
+        ++score.wrong;
+        mark = wanted == Visibility::Visible ? Rgba8{255, 0, 0, 255} : Rgba8{0, 0, 255, 255};
+      }
     }
   }
+  return difference;
 }
 
 }  // namespace
@@ -95,9 +110,13 @@ TEST(DemoSite, VisibleAndHiddenAgreeWithTheTruthForNineteenPixelsInTwenty) {
     const auto rendered = renderFrame(*project, loaded->data, project->frames[i].id, 0, 0, **renderer, pictures);
     ASSERT_TRUE(rendered) << rendered.error().text();
     const fs::path truth = folder / "truth";
-    compare(rendered->picture, readRaw<std::uint8_t>(truth / fmt::format("visibility.{:04}.u8", i)),
-            readRaw<float>(truth / fmt::format("depth.{:04}.f32", i)),
-            readRaw<float>(truth / fmt::format("designdepth.{:04}.f32", i)), score);
+    const ColourImage difference = compare(
+        rendered->picture, readRaw<std::uint8_t>(truth / fmt::format("visibility.{:04}.u8", i)),
+        readRaw<float>(truth / fmt::format("depth.{:04}.f32", i)),
+        readRaw<float>(truth / fmt::format("designdepth.{:04}.f32", i)), score);
+    if (const char* pictureFolder = std::getenv("ALIDADE_TEST_PICTURES")) {
+      ASSERT_TRUE(writePng(difference, (fs::path(pictureFolder) / fmt::format("visibility_{}.png", i)).string()));
+    }
   }
   std::printf("design pixels %llu: right %.2f %%, wrong %.2f %%, unknown %.2f %%, not drawn %.2f %%\n",
               static_cast<unsigned long long>(score.all()), score.share(score.right), score.share(score.wrong),
