@@ -73,7 +73,7 @@ Visibility visibilityAt(const DepthImage& occlusion, const glm::dvec2& pixel, do
   if (!inside) return Visibility::Outside;
   const double depth = occlusion.at(static_cast<int>(nearest.x), static_cast<int>(nearest.y));
   if (std::isnan(depth)) return Visibility::Unknown;
-  return z <= depth + toleranceM + 0.002 * z ? Visibility::Visible : Visibility::Hidden;
+  return z <= depth + toleranceM + 0.0005 * z ? Visibility::Visible : Visibility::Hidden;
 }
 
 }  // namespace alidade

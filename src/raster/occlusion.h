@@ -25,7 +25,7 @@ OcclusionDepth occlusionDepth(const std::vector<SplatLayer>& layers, const Camer
 /// What the scan says of a point at depth `z` behind pixel (x, y).
 enum class Visibility { Visible, Hidden, Unknown, Outside };
 
-/// Visible where z <= depth + tolerance (absolute metres plus 0.2 % of z), Hidden behind it, Unknown
+/// Visible where z <= depth + tolerance (absolute metres plus 0.05 % of z), Hidden behind it, Unknown
 /// where the depth is NaN, Outside beyond the picture.
 Visibility visibilityAt(const DepthImage& occlusion, const glm::dvec2& pixel, double z, double toleranceM);
 
