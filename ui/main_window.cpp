@@ -49,6 +49,7 @@ MainWindow::MainWindow(QWidget* parent)
   setObjectName(QStringLiteral("mainWindow"));
   setAcceptDrops(true);
   setDockNestingEnabled(true);
+  setTabPosition(Qt::AllDockWidgetAreas, QTabWidget::North);
   resize(1600, 980);
   m_files = new ProjectFiles(*m_session, this);
   m_refinement = new PoseRefinement(*m_session, this);
@@ -95,6 +96,7 @@ void MainWindow::buildCentre() {
   m_splitter->addWidget(m_overlay);
   m_splitter->addWidget(m_scene);
   m_splitter->setChildrenCollapsible(false);
+  m_splitter->setHandleWidth(3);
   m_scene->hide();
   m_welcome = new WelcomePage(*m_files, *m_actions);
   m_pages = new QStackedWidget;

@@ -241,7 +241,7 @@ QVariant ProjectTreeModel::data(const QModelIndex& index, int role) const {
   switch (role) {
     case Qt::DisplayRole: return row.detail.isEmpty() ? rowText(row) : rowText(row) + QStringLiteral("   ") + row.detail;
     case Qt::ToolTipRole: return row.detail.isEmpty() ? row.name : QStringLiteral("%1, %2").arg(row.name, row.detail);
-    case Qt::DecorationRole: return icon(iconNameOf(row.kind));
+    case Qt::DecorationRole: return icon(iconNameOf(row.kind), true);
     case Qt::CheckStateRole:
       if (checkable(row.kind)) return checkState(row);
       return {};

@@ -15,6 +15,16 @@
 
 namespace alidade {
 
+namespace {
+
+/// One coordinate a line: the panel is too narrow for three, and a figure must not break.
+QString stackedWorld(const glm::dvec3& world) {
+  return QStringLiteral("E %1 m\nN %2 m\nH %3 m")
+      .arg(formatCoordinate(world.x), formatCoordinate(world.y), formatCoordinate(world.z));
+}
+
+}  // namespace
+
 PropertiesPanel::PropertiesPanel(Session& session, QWidget* parent) : QScrollArea(parent), m_session(session) {
   setWidgetResizable(true);
   setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
@@ -106,7 +116,7 @@ void PropertiesPanel::showElement(const DesignModel& model, int index) {
   if (!box.empty()) {
     const glm::dvec3 size = box.size();
     row(tr("Size"), QStringLiteral("%1 × %2 × %3 m").arg(size.x, 0, 'f', 3).arg(size.y, 0, 'f', 3).arg(size.z, 0, 'f', 3));
-    row(tr("Middle"), formatWorld(box.centre()));
+    row(tr("Middle"), stackedWorld(box.centre()));
   }
   row(tr("Global id"), text(element.globalId));
   std::string set;
@@ -139,7 +149,7 @@ void PropertiesPanel::showAnnotation(const Annotation& annotation) {
   heading(annotation.text.empty() ? tr("Arrow") : text(annotation.text), tr("Annotation"));
   startRows();
   row(tr("Tied to"), world ? tr("the world, seen in every frame") : tr("this picture"));
-  if (world) row(tr("At"), formatWorld(annotation.world));
+  if (world) row(tr("At"), stackedWorld(annotation.world));
   else row(tr("At"), formatPixel(annotation.pixel));
 }
 
@@ -158,7 +168,7 @@ void PropertiesPanel::showFrame() {
                         .arg(in.fx, 0, 'f', 1));
     row(tr("Picture"), QStringLiteral("%1 × %2 px").arg(in.width).arg(in.height));
   }
-  if (frame->cameraFromWorld) row(tr("Stands at"), formatWorld(frame->cameraFromWorld->centre()));
+  if (frame->cameraFromWorld) row(tr("Stands at"), stackedWorld(frame->cameraFromWorld->centre()));
   if (frame->quality) {
     const PoseQuality& q = *frame->quality;
     row(tr("Residual rms"), QStringLiteral("%1 px, %2 points").arg(q.rmsPx, 0, 'f', 2).arg(q.observations));

@@ -63,6 +63,7 @@ void SceneWidget::resizeGL(int, int) {
 void SceneWidget::paintGL() {
   // VTK's render events may end in update(); a picture that asks for the next one would never rest.
   m_painting = true;
+  if (std::exchange(m_fitDue, false)) m_view->fitAll();  // only now is the size known
   m_view->paint(defaultFramebufferObject());
   m_painting = false;
 }
@@ -91,7 +92,7 @@ void SceneWidget::updateAll() {
   updateSelection();
   if (m_framedData != &data && !(data.clouds.empty() && data.designs.empty())) {
     m_framedData = &data;
-    m_view->fitAll();
+    m_fitDue = true;
   }
   refresh();
 }

@@ -62,7 +62,7 @@ class SceneWidget : public QOpenGLWidget {
   QTimer m_still;
   QPointF m_pressed, m_last;
   Qt::MouseButton m_button = Qt::NoButton;
-  bool m_dragged = false, m_shown = false, m_painting = false, m_stale = true;
+  bool m_dragged = false, m_shown = false, m_painting = false, m_fitDue = false, m_stale = true;
   const LoadedData* m_framedData = nullptr;  ///< what was last fitted to; compared, never read
 };
 

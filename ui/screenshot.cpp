@@ -8,7 +8,9 @@
 
 #include <QAction>
 #include <QCoreApplication>
+#include <QDialog>
 #include <QElapsedTimer>
+#include <QPainter>
 #include <QPixmap>
 #include <QTimer>
 
@@ -47,7 +49,12 @@ void takeScreenshot(MainWindow& window, const QString& path, const QStringList& 
       return;
     }
     timer->stop();
-    const bool saved = window.grab().save(path);
+    QPixmap picture = window.grab();
+    QPainter painter(&picture);
+    for (QDialog* dialog : window.findChildren<QDialog*>())
+      if (dialog->isVisible()) painter.drawPixmap(dialog->pos() - window.pos(), dialog->grab());
+    painter.end();
+    const bool saved = picture.save(path);
     if (!saved) std::fprintf(stderr, "The screenshot could not be written to %s\n", qPrintable(path));
     QCoreApplication::exit(saved && !late ? 0 : 1);
   });

@@ -32,6 +32,10 @@ Session::Session(QObject* parent)
 }
 
 Session::~Session() {
+  // Nobody is to be told of a session that is half gone.
+  for (QObject* part : {static_cast<QObject*>(this), static_cast<QObject*>(&m_undo), static_cast<QObject*>(&m_messages),
+                        static_cast<QObject*>(&m_jobs), static_cast<QObject*>(&m_render)})
+    part->disconnect();
   m_jobs.cancelAll();
 }
 

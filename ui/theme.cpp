@@ -82,7 +82,7 @@ QString styleSheetOf(const ThemeColours& c) {
 /// Paints the SVG at the very size asked for: crisp at 16 px, at 200 % and in between.
 class SvgIconEngine : public QIconEngine {
  public:
-  explicit SvgIconEngine(const QString& name) : m_name(name) {
+  SvgIconEngine(const QString& name, bool plain) : m_plain(plain) {
     QFile file(QStringLiteral(":/icons/%1.svg").arg(name));
     if (file.open(QIODevice::ReadOnly)) m_source = file.readAll();
   }
@@ -93,7 +93,7 @@ class SvgIconEngine : public QIconEngine {
     if (mode == QIcon::Disabled) {
       colour = colours().dimText;
       colour.setAlpha(120);
-    } else if (state == QIcon::On) {
+    } else if (state == QIcon::On && !m_plain) {
       colour = colours().accent;
     }
     QByteArray svg = m_source;
@@ -113,7 +113,7 @@ class SvgIconEngine : public QIconEngine {
   }
 
  private:
-  QString m_name;
+  bool m_plain;
   QByteArray m_source;
 };
 
@@ -185,8 +185,8 @@ QFont titleFont() {
   return fontOfPixels(18, true);
 }
 
-QIcon icon(const QString& name) {
-  return QIcon(new SvgIconEngine(name));
+QIcon icon(const QString& name, bool plain) {
+  return QIcon(new SvgIconEngine(name, plain));
 }
 
 }  // namespace alidade

@@ -31,7 +31,8 @@ QFont smallFont();
 QFont bodyFont();
 QFont titleFont();
 
-/// An icon of our set, resources/icons/<name>.svg, drawn in the theme's text colour at any size.
-QIcon icon(const QString& name);
+/// An icon of our set, resources/icons/<name>.svg, drawn in the theme's text colour at any size; in the
+/// accent while it is on (a checked tool), unless `plain` (a tree shows open rows as on).
+QIcon icon(const QString& name, bool plain = false);
 
 }  // namespace alidade

@@ -11,6 +11,7 @@
 #include "app/jobs.h"
 #include "io/picture_file.h"
 #include "ui/export_dialog.h"
+#include "ui/project_tree_model.h"
 #include "ui/scene_widget.h"
 #include "ui/value_slider.h"
 #include "ui/window_fixture.h"
