@@ -8,6 +8,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include <fmt/format.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -35,6 +36,10 @@ std::string contentOf(const fs::path& path) {
 
 }  // namespace
 
+std::string quoted(const fs::path& path) {
+  return fmt::format("\"{}\"", path.string());
+}
+
 const fs::path& scratch() {
   static const Scratch instance;
   return instance.path;
@@ -43,8 +48,8 @@ const fs::path& scratch() {
 Outcome alidadeCli(const std::string& arguments, const std::string& input) {
   const fs::path in = scratch() / "stdin", out = scratch() / "stdout", err = scratch() / "stderr";
   std::ofstream(in, std::ios::binary) << input;
-  const std::string command = std::string("\"") + ALIDADE_BINARY_DIR + "/bin/alidade-cli\" " + arguments + " < \"" +
-                              in.string() + "\" > \"" + out.string() + "\" 2> \"" + err.string() + "\"";
+  const std::string command = fmt::format("{} {} < {} > {} 2> {}", quoted(ALIDADE_BINARY_DIR "/bin/alidade-cli"), arguments,
+                                          quoted(in), quoted(out), quoted(err));
   const int status = std::system(command.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), contentOf(out), contentOf(err)};
 }
@@ -53,7 +58,7 @@ const fs::path& smallDemo() {
   static const fs::path folder = [] {
     const fs::path made = scratch() / "demo";
     const auto outcome =
-        alidadeCli("demo \"" + made.string() + "\" --points 60000 --frames 4 --seed 3 --width 480 --height 360");
+        alidadeCli(fmt::format("demo {} --points 60000 --frames 4 --seed 3 --width 480 --height 360", quoted(made)));
     if (outcome.exitCode != 0) throw std::runtime_error("demo failed: " + outcome.errors);
     return made;
   }();

@@ -20,6 +20,9 @@ struct Outcome {
 /// Runs `alidade-cli ARGUMENTS` in a shell, with `input` on standard input.
 Outcome alidadeCli(const std::string& arguments, const std::string& input = {});
 
+/// The path between double quotes, for a shell.
+std::string quoted(const std::filesystem::path& path);
+
 /// A folder of this test process's own, removed at its end.
 const std::filesystem::path& scratch();
 

@@ -15,7 +15,7 @@ namespace alidade::test {
 namespace {
 
 std::string demoProject() {
-  return "\"" + (smallDemo() / "demo.alidade").string() + "\"";
+  return quoted(smallDemo() / "demo.alidade");
 }
 
 }  // namespace
@@ -35,7 +35,7 @@ TEST(CommandLine, MakesTheSampleInspectionAndSaysWhatItHolds) {
 
 TEST(CommandLine, DrawsAFrameWithItsTitleBlockAndTextChunks) {
   const auto picture = scratch() / "overlay.png";
-  const auto outcome = alidadeCli("overlay --json " + demoProject() + " --frame 0 -o \"" + picture.string() + "\"");
+  const auto outcome = alidadeCli("overlay --json " + demoProject() + " --frame 0 -o " + quoted(picture));
   ASSERT_EQ(outcome.exitCode, 0) << outcome.errors;
   const auto json = outcome.json();
   EXPECT_EQ(json["width"], 480);
@@ -55,8 +55,8 @@ TEST(CommandLine, DrawsAFrameWithItsTitleBlockAndTextChunks) {
 
 TEST(CommandLine, ABarePictureHasTheAskedSizeAndNothingElse) {
   const auto picture = scratch() / "bare.png";
-  const auto outcome = alidadeCli("overlay " + demoProject() + " --frame 1 --size 240x180 --bare --hidden hide -o \"" +
-                                  picture.string() + "\"");
+  const auto outcome = alidadeCli("overlay " + demoProject() + " --frame 1 --size 240x180 --bare --hidden hide -o " +
+                                  quoted(picture));
   ASSERT_EQ(outcome.exitCode, 0) << outcome.errors;
   const auto image = readPicture(picture.string());
   ASSERT_TRUE(image);
@@ -68,7 +68,7 @@ TEST(CommandLine, DensityDrawsFewerPointsAndNothingAtZero) {
   std::uint64_t last = ~0ull;
   for (const char* density : {"1", "0.5", "0.1", "0"}) {
     const auto outcome = alidadeCli("overlay --json " + demoProject() + " --frame 0 --size 240x180 --density " + density +
-                                    " -o \"" + (scratch() / "density.png").string() + "\"");
+                                    " -o " + quoted(scratch() / "density.png"));
     ASSERT_EQ(outcome.exitCode, 0) << outcome.errors;
     const std::uint64_t drawn = outcome.json()["points_drawn"];
     EXPECT_LT(drawn, last);
@@ -81,7 +81,7 @@ TEST(CommandLine, RefinesAPoseFromObservationsAndRemembersIt) {
   const auto observations = smallDemo() / "observations.csv";
   ASSERT_TRUE(std::filesystem::exists(observations));
   const std::string common =
-      "refine --json " + demoProject() + " --frame 0 --observations \"" + observations.string() + "\"";
+      "refine --json " + demoProject() + " --frame 0 --observations " + quoted(observations);
   const auto dry = alidadeCli(common + " --dry-run --at 2683500,1247800,412");
   ASSERT_EQ(dry.exitCode, 0) << dry.errors << dry.output;
   const auto json = dry.json();
@@ -98,7 +98,7 @@ TEST(CommandLine, RefinesAPoseFromObservationsAndRemembersIt) {
 TEST(CommandLine, ADegenerateSetIsRefusedWithItsReasonAndTheProjectUnchanged) {
   const auto observations = scratch() / "two.csv";
   std::ofstream(observations) << "u,v,e,n,h\n100,100,2683500,1247800,412\n200,200,2683501,1247801,413\n";
-  const auto outcome = alidadeCli("refine --json " + demoProject() + " --frame 0 --observations \"" + observations.string() + "\"");
+  const auto outcome = alidadeCli("refine --json " + demoProject() + " --frame 0 --observations " + quoted(observations));
   EXPECT_EQ(outcome.exitCode, 1);
   EXPECT_FALSE(outcome.json()["converged"]);
   EXPECT_FALSE(outcome.json()["reason"].get<std::string>().empty());
@@ -125,11 +125,11 @@ TEST(CommandLine, BadUsageIsTwoAndFailureIsOne) {
   EXPECT_EQ(alidadeCli("frobnicate").exitCode, 2);
   EXPECT_EQ(alidadeCli("overlay").exitCode, 2);
   EXPECT_EQ(alidadeCli("--help").exitCode, 0);
-  EXPECT_EQ(alidadeCli("demo \"" + (scratch() / "x").string() + "\" --points -5").exitCode, 2);
-  const auto missing = alidadeCli("overlay /nowhere/p.alidade --frame 0 -o \"" + (scratch() / "x.png").string() + "\"");
+  EXPECT_EQ(alidadeCli("demo " + quoted(scratch() / "x") + " --points -5").exitCode, 2);
+  const auto missing = alidadeCli("overlay /nowhere/p.alidade --frame 0 -o " + quoted(scratch() / "x.png"));
   EXPECT_EQ(missing.exitCode, 1);
   EXPECT_NE(missing.errors.find("/nowhere/p.alidade"), std::string::npos);
-  const auto frame = alidadeCli("overlay " + demoProject() + " --frame 99 -o \"" + (scratch() / "x.png").string() + "\"");
+  const auto frame = alidadeCli("overlay " + demoProject() + " --frame 99 -o " + quoted(scratch() / "x.png"));
   EXPECT_EQ(frame.exitCode, 1);
   EXPECT_NE(frame.errors.find("99"), std::string::npos);
 }
@@ -145,10 +145,10 @@ TEST(CommandLine, AMissingSourceIsNamed) {
   std::filesystem::create_directories(folder);
   std::filesystem::copy_file(smallDemo() / "demo.alidade", folder / "demo.alidade",
                              std::filesystem::copy_options::overwrite_existing);
-  const auto info = alidadeCli("info --json \"" + (folder / "demo.alidade").string() + "\"");
+  const auto info = alidadeCli("info --json " + quoted(folder / "demo.alidade"));
   EXPECT_FALSE(info.json()["files"][0]["source_problems"].empty());
   const auto overlay =
-      alidadeCli("overlay \"" + (folder / "demo.alidade").string() + "\" --frame 0 -o \"" + (scratch() / "x.png").string() + "\"");
+      alidadeCli("overlay " + quoted(folder / "demo.alidade") + " --frame 0 -o " + quoted(scratch() / "x.png"));
   EXPECT_EQ(overlay.exitCode, 1);
 }
 
