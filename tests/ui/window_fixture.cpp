@@ -5,7 +5,9 @@
 
 #include <cmath>
 
+#include <QApplication>
 #include <QElapsedTimer>
+#include <QMouseEvent>
 
 #include "app/jobs.h"
 
@@ -47,6 +49,7 @@ void OpenWindow::SetUp() {
   ASSERT_TRUE(settle());
   ASSERT_NE(session().rendered(), nullptr);
   window->activateWindow();
+  ASSERT_TRUE(QTest::qWaitForWindowActive(window.get()));
   view().setFocus();
 }
 
@@ -71,18 +74,24 @@ std::optional<glm::dvec2> OpenWindow::pixelOnElement() {
   return std::nullopt;
 }
 
-std::optional<glm::dvec2> OpenWindow::pixelOnScan(bool supported) {
+std::optional<glm::dvec2> OpenWindow::pixelOnScan(bool supported, const glm::dvec2& away) {
   const PictureProbe& probe = view().probe();
   for (int y = probe.rawHeight() / 4; y < probe.rawHeight() * 3 / 4; y += 2)
     for (int x = probe.rawWidth() / 4; x < probe.rawWidth() * 3 / 4; x += 2)
-      if (probe.readout({x, y}).world.has_value() == supported && probe.stakePointAt({x, y}, 20.0).empty())
+      if (glm::length(glm::dvec2(x, y) - away) > 20 && probe.readout({x, y}).world.has_value() == supported && probe.stakePointAt({x, y}, 20.0).empty())
         return glm::dvec2(x, y);
   return std::nullopt;
 }
 
+void OpenWindow::hover(const glm::dvec2& raw) {
+  const QPointF at = view().viewFromRaw(raw).toPoint();
+  QMouseEvent move(QEvent::MouseMove, at, view().mapToGlobal(at), Qt::NoButton, Qt::NoButton, Qt::NoModifier);
+  QApplication::sendEvent(&view(), &move);
+}
+
 void OpenWindow::click(const glm::dvec2& raw, Qt::MouseButton button) {
   const QPoint at = view().viewFromRaw(raw).toPoint();
-  QTest::mouseMove(&view(), at);
+  hover(raw);
   QTest::mouseClick(&view(), button, Qt::NoModifier, at);
 }
 
