@@ -3,6 +3,7 @@
 
 #include "raster/occlusion.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <limits>
@@ -15,34 +16,44 @@ namespace alidade {
 
 namespace {
 
+/// Spacing times focal length as the payload carries it: log2 in steps of 2^-13, above the place in the pixel.
+std::uint32_t spacingCode(double pixelMeters) {
+  const double code = std::round((std::log2(std::max(pixelMeters, 1e-9)) + 32.0) * 8192.0);
+  return static_cast<std::uint32_t>(std::clamp(code, 0.0, 1048575.0)) << PlaceInPixel::kBits;
+}
+
+float decodedSpacing(std::uint32_t payload) {
+  return std::exp2(static_cast<float>(payload >> PlaceInPixel::kBits) / 8192.0f - 32.0f);
+}
+
 /// The nearest dot a pixel, with its surface's spacing in pixels.
 DotImage drawDots(const std::vector<SplatLayer>& layers, const Camera& camera,
                   const RigidTransform& cameraFromWorld) {
   SplatOptions options;
   options.maximumSizePx = 1.0;
   const SplatView base = baseView(camera, options);
-  const auto focal = static_cast<float>(std::sqrt(std::abs(camera.intrinsics().fx * camera.intrinsics().fy)));
+  const double focal = std::sqrt(std::abs(camera.intrinsics().fx * camera.intrinsics().fy));
   std::vector<SplatRun> runs;
-  std::vector<float> spacing;
   for (const SplatLayer& layer : layers) {
     if (!layer.store) continue;
     for (const SelectedRange& range : layer.selection.ranges) {
       runs.push_back(makeRun(*layer.store, range, cameraFromWorld, base, options));
-      runs.back().payloadBase = static_cast<std::uint32_t>(spacing.size());
-      spacing.push_back(static_cast<float>(range.spacing) * focal);
+      runs.back().payloadBase = spacingCode(range.spacing * focal);
     }
   }
-  DotImage dots{Image<float>(camera.width(), camera.height()), Image<float>(camera.width(), camera.height())};
+  DotImage dots(camera.width(), camera.height());
   const auto merge = [&](const SplatPlanes<std::uint64_t>& planes, std::size_t first, std::size_t last) {
     for (std::size_t i = first; i < last; ++i) {
       const std::uint64_t pixel = planes.nearest(i);
       const float z = std::bit_cast<float>(static_cast<std::uint32_t>(pixel >> 32));
       if (!(z > 0.0f)) continue;
       dots.inverseDepth.data()[i] = 1.0f / z;
-      dots.spacingPx.data()[i] = spacing[static_cast<std::uint32_t>(pixel)] / z;
+      const auto payload = static_cast<std::uint32_t>(pixel);
+      dots.spacingPx.data()[i] = decodedSpacing(payload) / z;
+      dots.place.data()[i] = static_cast<std::uint16_t>(payload & ((1u << PlaceInPixel::kBits) - 1));
     }
   };
-  drawRuns(runs, camera.width(), camera.height(), SplatPayload::Constant, {}, merge);
+  drawRuns(runs, camera.width(), camera.height(), SplatPayload::Place, {}, merge);
   return dots;
 }
 

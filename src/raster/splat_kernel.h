@@ -35,7 +35,16 @@ enum class SplatPayload {
   None,      ///< 32-bit pixels: depth alone
   Index,     ///< payloadBase + the point's place in the run
   Colour,    ///< the point's RGB565
-  Constant,  ///< payloadBase
+  Place,     ///< payloadBase + where in the pixel the point fell, as PlaceInPixel reads it
+};
+
+/// Pixels from a pixel's centre to the point that SplatPayload::Place tells of: 6 bits each of u and v.
+struct PlaceInPixel {
+  static constexpr std::uint32_t kBits = 12;
+  float u, v;
+  explicit PlaceInPixel(std::uint32_t payload)
+      : u((static_cast<float>(payload >> 6 & 63) - 31.5f) / 64.0f),
+        v((static_cast<float>(payload & 63) - 31.5f) / 64.0f) {}
 };
 
 /// One thread's pixels, width × height and one spare. Depth is a positive float's bits, which order

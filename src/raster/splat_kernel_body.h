@@ -122,7 +122,14 @@ ALIDADE_LENS_INLINE void drawPixels(const SplatView& view, const Projected& p, c
   std::memcpy(depth, &p.z, sizeof p.z);
   if constexpr (packed) {
     alignas(64) std::uint32_t payload[kLanes];
-    const Words words = payloadOf(target, place, p.colour);
+    Words words = payloadOf(target, place, p.colour);
+    if (target.payload == SplatPayload::Place) {
+      const Floats inU = inside ? u - __builtin_convertvector(column, Floats) : zero;
+      const Floats inV = inside ? v - __builtin_convertvector(row, Floats) : zero;
+      const Ints code = __builtin_convertvector(64.0f * inU, Ints) * 64 +
+                        __builtin_convertvector(64.0f * inV, Ints);
+      words += reinterpret_cast<const Words&>(code);
+    }
     std::memcpy(payload, &words, sizeof words);
     for (int i = 0; i < kLanes; ++i) put<true>(target, offset[i], depth[i], payload[i]);
   } else {

@@ -65,6 +65,11 @@ struct Plane {
   bool good = false;
 };
 
+template <class T>
+T allowedResidual(T w) {
+  return w * (kResidual + kResidualMeters * w);
+}
+
 Plane fit(const Moments& m) {
   Plane plane;
   if (m.n < 4) return plane;
@@ -77,7 +82,7 @@ Plane fit(const Moments& m) {
   if (det < 0.02 * trace * trace) return plane;
   const double gx = (xw * yy - yw * xy) / det, gy = (yw * xx - xw * xy) / det;
   const double residual = std::max(0.0, ww - gx * xw - gy * yw) / std::max(1.0, n - 3);
-  const double allowed = w * (kResidual + kResidualMeters * w);
+  const double allowed = allowedResidual(w);
   plane.good = residual <= allowed * allowed;
   plane.gx = static_cast<float>(gx);
   plane.gy = static_cast<float>(gy);
@@ -104,7 +109,7 @@ class Filler {
     }
     parallelFor(m_filled.size(), 1 << 16, [&](std::size_t first, std::size_t last, int) {
       float* w = m_dots.inverseDepth.data();
-      for (std::size_t i = first; i < last; ++i) w[i] = w[i] > 0.0f ? w[i] : m_filled.data()[i];
+      for (std::size_t i = first; i < last; ++i) w[i] = m_filled.data()[i] > 0.0f ? m_filled.data()[i] : w[i];
     });
   }
 
@@ -119,11 +124,13 @@ class Filler {
                        y < std::min(m_height, static_cast<int>(2 * last)); ++y) {
                     const float* w = m_dots.inverseDepth.row(y);
                     const float* spacing = m_dots.spacingPx.row(y);
+                    const std::uint16_t* place = m_dots.place.row(y);
                     Moments* row = moments.row(y >> 1);
                     for (int x = 0; x < m_width; ++x) {
                       if (w[x] <= 0.0f) continue;
                       const float level = spacing[x] > 1.0f ? std::log2(spacing[x]) + 1.0f : 1.0f;
-                      row[x >> 1].addDot((x & 1) - 0.5f, (y & 1) - 0.5f, w[x], level);
+                      const PlaceInPixel in(place[x]);
+                      row[x >> 1].addDot((x & 1) - 0.5f + in.u, (y & 1) - 0.5f + in.v, w[x], level);
                     }
                   }
                 });
@@ -150,7 +157,7 @@ class Filler {
     const int x1 = std::min((cx + 1) << k, m_width), y1 = std::min((cy + 1) << k, m_height);
     for (int y = cy << k; y < y1; ++y) {
       for (int x = cx << k; x < x1; ++x) {
-        if (m_dots.inverseDepth.at(x, y) <= 0.0f && m_filled.at(x, y) <= 0.0f) return true;
+        if (m_filled.at(x, y) <= 0.0f) return true;
       }
     }
     return false;
@@ -212,9 +219,15 @@ class Filler {
     const float middle = 0.5f * static_cast<float>((1 << k) - 1);
     for (int y = y0; y < std::min(y0 + (1 << k), m_height); ++y) {
       for (int x = x0; x < std::min(x0 + (1 << k), m_width); ++x) {
-        if (m_dots.inverseDepth.at(x, y) > 0.0f || m_filled.at(x, y) > 0.0f) continue;
-        const float w = plane.w0 + plane.gx * (static_cast<float>(x - x0) - middle) +
-                        plane.gy * (static_cast<float>(y - y0) - middle);
+        if (m_filled.at(x, y) > 0.0f) continue;
+        float w = plane.w0 + plane.gx * (static_cast<float>(x - x0) - middle) +
+                  plane.gy * (static_cast<float>(y - y0) - middle);
+        if (const float dot = m_dots.inverseDepth.at(x, y); dot > 0.0f) {
+          const PlaceInPixel in(m_dots.place.at(x, y));
+          const float slope = plane.gx * in.u + plane.gy * in.v;
+          if (std::abs(dot - slope - w) > 3.0f * allowedResidual(w)) continue;
+          w = dot - slope;
+        }
         m_filled.at(x, y) = std::max(w, 0.0f);
       }
     }

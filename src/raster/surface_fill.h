@@ -4,14 +4,19 @@
 #pragma once
 
 #include "base/image.h"
+#include "raster/splat_kernel.h"
 
 namespace alidade {
 
 /// A picture of dots on the way to a picture of surfaces, in inverse depth, where a plane in space
 /// is linear on the screen.
 struct DotImage {
-  Image<float> inverseDepth;  ///< 1/metres; 0 where nothing is known
-  Image<float> spacingPx;     ///< pixels between neighbours on the dot's surface
+  DotImage(int width, int height)
+      : inverseDepth(width, height), spacingPx(width, height), place(width, height) {}
+
+  Image<float> inverseDepth;    ///< 1/metres; 0 where nothing is known
+  Image<float> spacingPx;       ///< pixels between neighbours on the dot's surface
+  Image<std::uint16_t> place;   ///< where in its pixel the dot lies, as PlaceInPixel reads it
 };
 
 /// Blanks dots that shine through a nearer surface.
