@@ -14,9 +14,11 @@ layout(set = 0, binding = 4) uniform sampler2D points;
 layout(set = 0, binding = 5) uniform sampler2D faceColour;
 layout(set = 0, binding = 6) uniform usampler2D faceElement;
 layout(set = 0, binding = 7) uniform sampler2D faceDepth;
-layout(set = 0, binding = 8) uniform sampler2D edgeCover;
-layout(set = 0, binding = 9) uniform usampler2D edgeElement;
-layout(set = 0, binding = 10) uniform sampler2D edgeDepth;
+layout(set = 0, binding = 8) uniform usampler2D faceKey;
+layout(set = 0, binding = 9) uniform usampler2D hiddenElement;
+layout(set = 0, binding = 10) uniform sampler2D edgeCover;
+layout(set = 0, binding = 11) uniform usampler2D edgeElement;
+layout(set = 0, binding = 12) uniform sampler2D edgeDepth;
 
 layout(location = 0) out vec4 outColour;
 layout(location = 1) out uint outElement;
@@ -45,53 +47,126 @@ float dots(vec2 at, float period) {
   return dot(d, d) < 0.06 ? 1.0 : 0.0;
 }
 
+vec3 designColour(vec3 c) { return frame.picture.z > 0.5 ? vec3(luminance(c)) : c; }
+
+// What a pixel of the front layer is drawn as: its own state, but for specks. Where hardly a pixel of the
+// same element around agrees, the scan's noise spoke, and the pixel follows the others.
+uint drawnState(ivec2 at, uint key) {
+  uint own = key & 3u, mine = key >> 2;
+  ivec2 last = ivec2(frame.lens.domain.zw) - 1;
+  uvec3 votes = uvec3(0u);
+  for (int i = 0; i < 4; ++i) {
+    ivec2 side = (i & 1) != 0 ? ivec2(2, 0) : ivec2(0, 2);
+    uint other = texelFetch(faceKey, clamp(at + ((i & 2) != 0 ? side : -side), ivec2(0), last), 0).r;
+    if ((other >> 2) == mine) ++votes[min(other & 3u, 2u)];
+  }
+  uint count = votes.x + votes.y + votes.z;
+  if (votes[min(own, 2u)] == count) return own;
+  for (int i = 0; i < 8; ++i) {
+    ivec2 corner = ivec2((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1) * (1 + (i >> 2));
+    uint other = texelFetch(faceKey, clamp(at + corner, ivec2(0), last), 0).r;
+    if ((other >> 2) == mine) ++votes[min(other & 3u, 2u)];
+  }
+  count = votes.x + votes.y + votes.z;
+  for (uint other = 0u; other < 3u; ++other)
+    if (other != own && 2u * votes[other] > count) return other;
+  return own;
+}
+
 vec3 overFace(vec3 under, vec4 face, uint state) {
-  vec3 c = frame.picture.z > 0.5 ? vec3(luminance(face.rgb)) : face.rgb;
+  vec3 c = designColour(face.rgb);
   float opacity = face.a;
   if (state == stateUnknown) {
-    float dot = dots(gl_FragCoord.xy, 7.0);
-    opacity *= mix(0.16, 0.9, dot);
+    opacity *= mix(0.14, 0.55, dots(gl_FragCoord.xy, 7.0));
     c = mix(c, vec3(luminance(c)), 0.4);
-  } else if (state == stateHidden) {
-    if (frame.scan.z == hiddenHide) return under;
-    if (frame.scan.z == hiddenGhost) {
-      c = mix(c, vec3(luminance(c)), 0.7);
-      opacity *= 0.3;
-    } else {
-      opacity *= mix(0.08, 0.85, hatch(gl_FragCoord.xy, 9.0, 0.25));
-    }
   }
   return mix(under, c, opacity);
+}
+
+// A face that the scan hides, over whatever is seen: so faint that the picture stays readable.
+vec3 overHidden(vec3 under, uint element, bool isThrough) {
+  if (frame.scan.z == hiddenHide) return under;
+  ElementStyle style = styles[element - 1u];
+  vec3 c = style.flags.x != 0u ? selectionColour : designColour(style.colour.rgb);
+  float opacity = style.flags.x != 0u ? 0.3 : 0.12;
+  // Through a visible face the outline speaks; the hatch only tells which side of it is meant.
+  if (frame.scan.z == hiddenDash)
+    opacity *= isThrough ? 1.2 * hatch(gl_FragCoord.xy, 14.0, 0.12) : 3.0 * hatch(gl_FragCoord.xy, 9.0, 0.22);
+  return mix(under, c, opacity * style.colour.a);
+}
+
+// Where the hidden layer's element ends, not counting ends that the front layer makes. Of two elements
+// that meet there, the one of higher rank is outlined.
+bool isOutline(ivec2 at, uint element) {
+  ivec2 last = ivec2(frame.lens.domain.zw) - 1;
+  for (int i = 0; i < 4; ++i) {
+    ivec2 side = (i & 1) != 0 ? ivec2(1, 0) : ivec2(0, 1);
+    ivec2 near = clamp(at + ((i & 2) != 0 ? side : -side), ivec2(0), last);
+    uint other = texelFetch(hiddenElement, near, 0).r;
+    if (other == element || stateOfKey(texelFetch(faceKey, near, 0).r) != stateVisible) continue;
+    if (texelFetch(faceElement, near, 0).r == element) continue;
+    if (other == 0u || styles[other - 1u].flags.w < styles[element - 1u].flags.w) return true;
+  }
+  return false;
+}
+
+// 1 on the drawn part of an outline: cells of a chequerboard, which dash a line of any direction.
+float chequer(float size) {
+  vec2 cell = floor(gl_FragCoord.xy / (size * frame.lines.z));
+  return mod(cell.x + cell.y, 2.0);
+}
+
+vec3 overOutline(vec3 under, uint element) {
+  if (frame.scan.z == hiddenHide || frame.lines.w < 0.5) return under;
+  ElementStyle style = styles[element - 1u];
+  vec3 c = style.flags.x != 0u ? selectionColour : designColour(style.colour.rgb);
+  return mix(under, c, frame.scan.z == hiddenDash ? 0.8 * chequer(6.0) : 0.5);
 }
 
 vec3 overEdge(vec3 under, vec2 cover, uint element) {
   ElementStyle style = styles[element - 1u];
   bool selected = style.flags.x != 0u;
-  vec3 line = selected ? selectionColour : 0.42 * style.colour.rgb;
-  if (frame.picture.z > 0.5 && !selected) line = vec3(luminance(line));
+  vec3 line = selected ? selectionColour : designColour(0.42 * style.colour.rgb);
   vec3 c = mix(under, vec3(selected ? 1.0 : 0.93), cover.y);
+  return mix(c, line, cover.x);
+}
+
+vec3 overHiddenEdge(vec3 under, vec2 cover, uint element) {
+  ElementStyle style = styles[element - 1u];
+  bool selected = style.flags.x != 0u;
+  vec3 line = selected ? selectionColour : designColour(mix(style.colour.rgb, vec3(1.0), 0.3));
+  vec3 c = mix(under, vec3(0.1), cover.y);
   return mix(c, line, cover.x);
 }
 
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
   vec3 colour = cameraImage(at);
-  float scanned = texelFetch(scanDepth, at, 0).r;
-  uint element = texelFetch(faceElement, at, 0).r;
+  uint key = texelFetch(faceKey, at, 0).r;
+  uint element = 0u, state = stateOutside;
   float depth = texelFetch(faceDepth, at, 0).r;
-  uint state = stateOutside;
-  if (element != 0u) {
-    state = stateOf(depth, scanned);
-    if (frame.view.y > 0.5) colour = overFace(colour, texelFetch(faceColour, at, 0), state);
+  if (key != 0u) {
+    element = texelFetch(faceElement, at, 0).r;
+    state = key & 3u;
+    if (frame.view.y > 0.5) {
+      uint drawn = frame.scan.x > 0.5 ? drawnState(at, key) : state;
+      uint behind = drawn == stateHidden ? element : 0u;
+      if (drawn != stateHidden) colour = overFace(colour, texelFetch(faceColour, at, 0), drawn);
+      bool isThrough = frame.hidden.x > 0.5 && state == stateVisible;
+      if (isThrough) behind = texelFetch(hiddenElement, at, 0).r;
+      if (behind != 0u) colour = overHidden(colour, behind, isThrough);
+      if (isThrough && behind != 0u && isOutline(at, behind)) colour = overOutline(colour, behind);
+    }
   }
-  vec2 cover = frame.lines.w > 0.5 ? texelFetch(edgeCover, at, 0).rg : vec2(0.0);
-  if (cover.y > 0.0) {
+  vec4 cover = frame.lines.w > 0.5 ? texelFetch(edgeCover, at, 0) : vec4(0.0);
+  if (cover.y > 0.0 || cover.w > 0.0) {
     uint owner = texelFetch(edgeElement, at, 0).r;
-    colour = overEdge(colour, cover, owner);
+    if (cover.w > 0.0) colour = overHiddenEdge(colour, cover.zw, owner);
+    if (cover.y > 0.0) colour = overEdge(colour, cover.xy, owner);
     if (element == 0u && styles[owner - 1u].flags.y != 0u) {
       element = owner;
       depth = texelFetch(edgeDepth, at, 0).r;
-      state = stateOf(depth, scanned);
+      state = stateOf(depth, texelFetch(scanDepth, at, 0).r);
     }
   }
   if (frame.scan.w > 0.5) {

@@ -17,11 +17,12 @@ layout(std140, set = 0, binding = 0) uniform FrameBlock {
   vec4 scan;     // 1 where the scan hides, tolerance in metres, hidden style, 1: point pass
   vec4 lines;    // half width of an edge and of its casing in pixels, pattern scale, 1: edges
   vec4 view;     // near plane in metres, 1: faces, depth slack of edges, pixels of a metre at depth 1 m
+  vec4 hidden;   // 1: there is a hidden layer, unused, unused, unused
 } frame;
 
 struct ElementStyle {
   vec4 colour;     // a: opacity
-  uvec4 flags;     // 1: selected, 1: has edges alone
+  uvec4 flags;     // 1: selected, 1: has edges alone, winding (0 open, 1 normals outwards, 2 inwards), hidden rank
 };
 
 layout(std430, set = 0, binding = 1) readonly buffer StyleBlock { ElementStyle styles[]; };
@@ -42,8 +43,13 @@ const vec3 selectionColour = vec3(1.0, 0.55, 0.05);
 uint stateOf(float z, float scanDepth) {
   if (frame.scan.x < 0.5) return stateVisible;
   if (scanDepth < 0.0) return stateUnknown;
-  return z <= scanDepth + frame.scan.y + 0.002 * z ? stateVisible : stateHidden;
+  return z <= scanDepth + frame.scan.y + 0.0005 * z ? stateVisible : stateHidden;
 }
+
+// A pixel of the front design layer in a byte: state in the low bits, above them a mark that tells
+// neighbouring elements apart (not all elements); 0 where there is no design.
+uint keyOf(uint element, uint state) { return state | ((1u + element % 63u) << 2); }
+uint stateOfKey(uint key) { return key == 0u ? stateOutside : key & 3u; }
 
 float luminance(vec3 c) { return dot(c, vec3(0.299, 0.587, 0.114)); }
 

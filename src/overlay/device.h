@@ -20,6 +20,8 @@ class OverlayDevice {
     DepthImage designDepth;
     IdImage element;
     Image<std::uint8_t> state;
+    /// The element of the hidden layer, see OverlayPicture; empty where there is no such layer.
+    IdImage hiddenElement;
   };
   virtual ~OverlayDevice() = default;
   virtual std::string name() const = 0;  ///< "Vulkan: llvmpipe (LLVM 15)"

@@ -149,12 +149,15 @@ std::vector<ElementStyle> stylesOf(const FrameDescription& frame) {
   for (const DesignLayer& layer : frame.designs) {
     if (!layer.model) continue;
     const std::size_t first = styles.size();
+    const auto shapes = shapesOf(layer.model);
     for (std::size_t e = 0; e < layer.model->elements.size(); ++e) {
       const DesignElement& element = layer.model->elements[e];
       const Rgba8 c = e < layer.elementColour.size() ? layer.elementColour[e] : element.colour;
       ElementStyle style;
       style.colour = glm::vec4(c.r, c.g, c.b, c.a) / 255.0f;
       style.edgesAlone = element.indexCount == 0;
+      style.winding = (*shapes)[e].winding;
+      style.hiddenRank = hiddenRank((*shapes)[e].area);
       styles.push_back(style);
     }
     for (const std::uint32_t selected : layer.selected)

@@ -10,6 +10,7 @@
 
 #include "base/image.h"
 #include "camera/camera.h"
+#include "overlay/element_shape.h"
 #include "overlay/frame_description.h"
 
 namespace alidade {
@@ -33,6 +34,8 @@ struct ElementStyle {
   glm::vec4 colour{0.8f, 0.8f, 0.8f, 1.0f};  ///< a: opacity of visible faces
   std::uint32_t selected = 0;
   std::uint32_t edgesAlone = 0;  ///< 1 where it has no faces, so that its edges carry its pixels
+  Winding winding = Winding::Open;
+  std::uint32_t hiddenRank = 0;  ///< see element_shape.h
 };
 
 /// What a device draws: subdivided camera-space geometry beside the pictures from raster/. Made by

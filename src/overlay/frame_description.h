@@ -55,7 +55,9 @@ struct FrameDescription {
   DisplaySettings display;
 };
 
-/// Pixels of one design element, counted on the result.
+/// Pixels of one design element, counted on the result. The front layer counts by its state; the hidden
+/// layer's pixels are added to `hidden` of their element, so that what lies buried under a visible surface
+/// is reported too, whatever the hidden style. A pixel may therefore count for two elements.
 struct ElementPixels {
   std::uint32_t layer = 0;
   std::uint32_t element = 0;
@@ -63,6 +65,12 @@ struct ElementPixels {
 };
 
 /// The picture and what can be asked of it. All images are of the result's size.
+///
+/// Two layers of the design are drawn. The front layer is the design surface nearest to the camera, be it
+/// visible, hidden or unknown; the images below speak of it alone. The hidden layer lies behind where the
+/// front layer is visible: a face of another element (no back faces of closed solids), hidden by that
+/// surface or by the scan, and drawn through it as HiddenStyle asks. Of several the smallest element is shown,
+/// so that a pipe is seen through the pavement and the bed that it lies in. No scan, no hidden layer.
 struct OverlayPicture {
   ColourImage colour;
   DepthImage scanDepth;    ///< occlusion depth: +inf or NaN as in raster/occlusion.h

@@ -43,6 +43,7 @@ FrameUniform frameUniform(const DrawList& list) {
             flag(list.pointColour != nullptr)};
   u.lines = {scale * kEdgeHalfWidthPx, scale * kCasingHalfWidthPx, scale, flag(drawsEdges(list))};
   u.view = {LensError::kNearM, flag(d.designFaces), kEdgeSlack, list.camera.intrinsics().fx};
+  u.hidden = {flag(drawsHiddenLayer(list)), 0, 0, 0};
   return u;
 }
 

@@ -21,6 +21,7 @@ struct FrameUniform {
   glm::vec4 scan;     ///< 1: the scan hides, tolerance (m), hidden style, 1: point pass
   glm::vec4 lines;    ///< half width of edge and casing (px), pattern scale, 1: edges
   glm::vec4 view;     ///< near plane (m), 1: faces, depth slack of edges, pixels of a metre at depth 1 m
+  glm::vec4 hidden;   ///< 1: there is a hidden layer; unused
 };
 static_assert(offsetof(FrameUniform, light) == 176);
 static_assert(offsetof(FrameUniform, shading) == 192);
@@ -28,12 +29,13 @@ static_assert(offsetof(FrameUniform, picture) == 208);
 static_assert(offsetof(FrameUniform, scan) == 224);
 static_assert(offsetof(FrameUniform, lines) == 240);
 static_assert(offsetof(FrameUniform, view) == 256);
-static_assert(sizeof(FrameUniform) == 272);
+static_assert(offsetof(FrameUniform, hidden) == 272);
+static_assert(sizeof(FrameUniform) == 288);
 
 /// The std430 entry of `StyleBlock` there.
 struct StyleUniform {
   glm::vec4 colour;
-  glm::uvec4 flags;  ///< selected, edges alone, unused, unused
+  glm::uvec4 flags;  ///< selected, edges alone, winding, hidden rank
 };
 static_assert(sizeof(StyleUniform) == 32);
 static_assert(sizeof(SurfaceVertex) == 28 && offsetof(SurfaceVertex, normal) == 12);
@@ -46,6 +48,11 @@ double drawingScale(int width, int height);
 /// Whether the edge pass runs at all.
 inline bool drawsEdges(const DrawList& list) {
   return list.display.designEdges && list.display.designPass && !list.edges.empty();
+}
+
+/// Whether what the scan hides behind visible design is looked for.
+inline bool drawsHiddenLayer(const DrawList& list) {
+  return list.scanDepth != nullptr && list.display.designPass && !list.triangles.empty();
 }
 
 FrameUniform frameUniform(const DrawList& list);

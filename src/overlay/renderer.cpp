@@ -66,7 +66,7 @@ ScanPictures drawScans(const FrameDescription& frame, const Camera& camera) {
 }
 
 /// Pixels of each element by state, over bands of rows.
-void countElements(OverlayPicture& picture, std::uint32_t elementCount) {
+void countElements(OverlayPicture& picture, const IdImage& hiddenElement, std::uint32_t elementCount) {
   using Counts = std::array<std::uint64_t, 3>;
   std::vector<std::vector<Counts>> perWorker(workerCount());
   parallelFor(picture.element.size(), std::size_t{1} << 18,
@@ -77,6 +77,8 @@ void countElements(OverlayPicture& picture, std::uint32_t elementCount) {
                   const std::uint32_t id = picture.element.data()[i];
                   const std::uint8_t state = picture.state.data()[i];
                   if (id != 0 && id <= elementCount && state < 3) ++counts[id][state];
+                  const std::uint32_t behind = hiddenElement.empty() ? 0 : hiddenElement.data()[i];
+                  if (behind != 0 && behind <= elementCount) ++counts[behind][1];
                 }
               });
   std::uint32_t layer = 0;
@@ -177,7 +179,7 @@ Result<OverlayPicture> OverlayRenderer::render(const FrameDescription& frame) {
     picture.firstElementOfLayer.push_back(elementCount);
     if (layer.model) elementCount += static_cast<std::uint32_t>(layer.model->elements.size());
   }
-  countElements(picture, elementCount);
+  countElements(picture, drawn->hiddenElement, elementCount);
   paintAnnotations(picture, frame, camera);
   return picture;
 }

@@ -107,13 +107,17 @@ class VulkanOverlayDevice final : public OverlayDevice {
   Result<void> rebind();
   void record(GpuCommands& commands, const DrawList& list);
   void recordUploads(GpuCommands& commands, const DrawList& list);
-  void recordDesign(GpuCommands& commands, const DrawList& list);
-  void recordComposite(GpuCommands& commands);
-  Output collect(int width, int height) const;
+  void drawFaces(GpuCommands& commands, const DrawList& list, const GpuPipeline& pipeline,
+                 const GpuBindings& bindings);
+  void recordFaces(GpuCommands& commands, const DrawList& list);
+  void recordEdges(GpuCommands& commands, const DrawList& list);
+  void recordComposite(GpuCommands& commands, const DrawList& list);
+  Output collect(const DrawList& list) const;
 
   std::shared_ptr<GpuDevice> m_device;
-  GpuPipeline m_surface, m_maskedSurface, m_edge, m_composite;
-  GpuBindings m_surfaceBindings, m_edgeBindings, m_compositeBindings;
+  GpuPipeline m_surface, m_maskedSurface, m_hidden, m_maskedHidden;
+  GpuPipeline m_edge, m_edgeWithDepth, m_edgeBehind, m_composite;
+  GpuBindings m_surfaceBindings, m_hiddenBindings, m_edgeBindings, m_compositeBindings;
   bool m_bindingsStale = true;
 
   GrowingBuffer m_uniform{GpuBufferUse::Uniform, {}};
@@ -128,8 +132,12 @@ class VulkanOverlayDevice final : public OverlayDevice {
   Target m_faceColour{GpuFormat::Rgba8, false, {}, {}};
   Target m_faceElement{GpuFormat::R32Uint, false, {}, {}};
   Target m_faceDepth{GpuFormat::R32Float, false, {}, {}};
+  Target m_faceKey{GpuFormat::R8Uint, false, {}, {}};
   Target m_depthBuffer{GpuFormat::Depth32, false, {}, {}};
-  Target m_edgeCover{GpuFormat::Rg8, false, {}, {}};
+  Target m_hiddenElement{GpuFormat::R32Uint, true, {}, {}};
+  Target m_hiddenDepth{GpuFormat::R32Float, false, {}, {}};
+  Target m_hiddenDepthBuffer{GpuFormat::Depth32, false, {}, {}};
+  Target m_edgeCover{GpuFormat::Rgba8, false, {}, {}};
   Target m_edgeElement{GpuFormat::R32Uint, false, {}, {}};
   Target m_edgeDepth{GpuFormat::R32Float, false, {}, {}};
   Target m_colour{GpuFormat::Rgba8, true, {}, {}};
@@ -148,30 +156,47 @@ Result<void> VulkanOverlayDevice::makePipelines() {
   surface.attributes = {{Kind::Vec3, offsetof(SurfaceVertex, pInCamera)},
                         {Kind::Vec3, offsetof(SurfaceVertex, normal)},
                         {Kind::Uint, offsetof(SurfaceVertex, element)}};
-  surface.targets = {{GpuFormat::Rgba8}, {GpuFormat::R32Uint}, {GpuFormat::R32Float}};
+  surface.targets = {{GpuFormat::Rgba8}, {GpuFormat::R32Uint}, {GpuFormat::R32Float}, {GpuFormat::R8Uint}};
   surface.depthTest = surface.depthWrite = true;
-  surface.bindings = {Binding::Uniform, Binding::Storage};
+  surface.bindings = {Binding::Uniform, Binding::Storage, Binding::SampledNearest};
   surface.constants = {0};
-  GpuGraphicsDescription masked = surface;
-  masked.constants = {1};
+  GpuGraphicsDescription hidden = surface;
+  hidden.vertexShader = "hidden_surface.vert";
+  hidden.fragmentShader = "hidden_surface.frag";
+  hidden.targets = {{GpuFormat::R32Uint}, {GpuFormat::R32Float}};
+  hidden.bindings.resize(5, Binding::SampledNearest);
+  GpuGraphicsDescription masked = surface, maskedHidden = hidden;
+  masked.constants = maskedHidden.constants = {1};
 
   GpuGraphicsDescription edge;
   edge.vertexShader = "design_edge.vert";
   edge.fragmentShader = "design_edge.frag";
-  edge.targets = {{GpuFormat::Rg8, GpuBlend::Maximum}, {GpuFormat::R32Uint}, {GpuFormat::R32Float}};
+  edge.targets = {{GpuFormat::Rgba8, GpuBlend::Maximum}, {GpuFormat::R32Uint}};
   edge.depthTest = true;  // coarse, so that what stands far behind costs nothing; the shader decides
-  edge.bindings = {Binding::Uniform, Binding::Storage, Binding::Storage, Binding::SampledNearest,
-                   Binding::SampledNearest};
+  edge.bindings = {Binding::Uniform, Binding::Storage, Binding::Storage};
+  edge.bindings.resize(9, Binding::SampledNearest);
+  edge.constants = {0};
+  GpuGraphicsDescription edgeBehind = edge, edgeWithDepth = edge;
+  edgeBehind.constants = {1};
+  edgeBehind.depthTest = false;  // the hidden layer's depth is no depth alone
+  edgeWithDepth.targets.push_back({GpuFormat::R32Float});
 
   GpuGraphicsDescription composite;
   composite.vertexShader = "composite.vert";
   composite.fragmentShader = "composite.frag";
   composite.targets = {{GpuFormat::Rgba8}, {GpuFormat::R32Uint}, {GpuFormat::R32Float}, {GpuFormat::R8Uint}};
   composite.bindings = {Binding::Uniform, Binding::Storage, Binding::SampledLinear};
-  composite.bindings.resize(11, Binding::SampledNearest);
+  composite.bindings.resize(13, Binding::SampledNearest);
 
-  const std::array<std::pair<GpuPipeline*, const GpuGraphicsDescription*>, 4> wanted{
-      {{&m_surface, &surface}, {&m_maskedSurface, &masked}, {&m_edge, &edge}, {&m_composite, &composite}}};
+  const std::array<std::pair<GpuPipeline*, const GpuGraphicsDescription*>, 8> wanted{
+      {{&m_surface, &surface},
+       {&m_maskedSurface, &masked},
+       {&m_hidden, &hidden},
+       {&m_maskedHidden, &maskedHidden},
+       {&m_edge, &edge},
+       {&m_edgeWithDepth, &edgeWithDepth},
+       {&m_edgeBehind, &edgeBehind},
+       {&m_composite, &composite}}};
   for (const auto& [pipeline, description] : wanted) {
     auto made = m_device->makePipeline(*description);
     if (!made) return fail(made.error());
@@ -184,8 +209,10 @@ Result<void> VulkanOverlayDevice::ensureTargets(const DrawList& list) {
   const int w = list.width, h = list.height;
   if (!m_colour.image || m_colour.image.width() != w || m_colour.image.height() != h) {
     m_bindingsStale = true;
-    for (Target* target : {&m_faceColour, &m_faceElement, &m_faceDepth, &m_depthBuffer, &m_edgeCover,
-                           &m_edgeElement, &m_edgeDepth, &m_element, &m_depth, &m_state, &m_colour})
+    for (Target* target :
+         {&m_faceColour, &m_faceElement, &m_faceDepth, &m_faceKey, &m_depthBuffer, &m_hiddenElement,
+          &m_hiddenDepth, &m_hiddenDepthBuffer, &m_edgeCover, &m_edgeElement, &m_edgeDepth, &m_element,
+          &m_depth, &m_state, &m_colour})
       if (auto made = target->make(*m_device, w, h); !made) return made;
   }
   const bool hasImage = list.image && !list.image->empty();
@@ -227,7 +254,7 @@ Result<void> VulkanOverlayDevice::uploadLists(const DrawList& list) {
   };
   std::vector<StyleUniform> styles;
   for (const ElementStyle& style : list.styles)
-    styles.push_back({style.colour, {style.selected, style.edgesAlone, 0, 0}});
+    styles.push_back({style.colour, {style.selected, style.edgesAlone, static_cast<std::uint32_t>(style.winding), style.hiddenRank}});
   const FrameUniform uniform = frameUniform(list);
   if (auto ok = put(m_uniform, &uniform, sizeof uniform, true); !ok) return ok;
   if (auto ok = put(m_styles, styles.data(), styles.size() * sizeof(StyleUniform), true); !ok) return ok;
@@ -255,15 +282,20 @@ Result<void> VulkanOverlayDevice::rebind() {
     bindings = std::move(*made);
     return {};
   };
-  if (auto ok = make(m_surfaceBindings, m_surface, {frame, styles}); !ok) return ok;
+  if (auto ok = make(m_surfaceBindings, m_surface, {frame, styles, m_scanDepth.image}); !ok) return ok;
+  if (auto ok = make(m_hiddenBindings, m_hidden,
+                     {frame, styles, m_scanDepth.image, m_faceKey.image, m_faceElement.image});
+      !ok)
+    return ok;
   if (auto ok = make(m_edgeBindings, m_edge,
-                     {frame, styles, m_edgeVertices.buffer, m_scanDepth.image, m_faceDepth.image});
+                     {frame, styles, m_edgeVertices.buffer, m_scanDepth.image, m_faceDepth.image,
+                      m_faceKey.image, m_faceElement.image, m_hiddenDepth.image, m_hiddenElement.image});
       !ok)
     return ok;
   if (auto ok = make(m_compositeBindings, m_composite,
                      {frame, styles, m_image.image, m_scanDepth.image, m_points.image, m_faceColour.image,
-                      m_faceElement.image, m_faceDepth.image, m_edgeCover.image, m_edgeElement.image,
-                      m_edgeDepth.image});
+                      m_faceElement.image, m_faceDepth.image, m_faceKey.image, m_hiddenElement.image,
+                      m_edgeCover.image, m_edgeElement.image, m_edgeDepth.image});
       !ok)
     return ok;
   m_bindingsStale = false;
@@ -277,31 +309,60 @@ void VulkanOverlayDevice::recordUploads(GpuCommands& commands, const DrawList& l
   for (const UploadedImage* image : {&m_image, &m_scanDepth, &m_points}) commands.toSampled(image->image);
 }
 
-void VulkanOverlayDevice::recordDesign(GpuCommands& commands, const DrawList& list) {
+void VulkanOverlayDevice::drawFaces(GpuCommands& commands, const DrawList& list, const GpuPipeline& pipeline,
+                                    const GpuBindings& bindings) {
+  if (list.triangles.empty()) return;
+  commands.bind(pipeline, bindings);
+  commands.bindVertices(m_vertices.buffer);
+  commands.bindIndices(m_indices.buffer);
+  commands.drawIndexed(static_cast<std::uint32_t>(list.triangles.size()));
+}
+
+void VulkanOverlayDevice::recordFaces(GpuCommands& commands, const DrawList& list) {
   constexpr float nothing = std::numeric_limits<float>::infinity();
   const bool masked = LensError(list.camera, list.display.subdivisionErrorPx).foldsInPicture();
-  commands.beginPass({{m_faceColour.cleared(), m_faceElement.cleared(), m_faceDepth.cleared(nothing)},
+  commands.beginPass({{m_faceColour.overwritten(), m_faceElement.overwritten(), m_faceDepth.cleared(nothing),
+                       m_faceKey.cleared()},
                       m_depthBuffer.cleared()});
-  if (!list.triangles.empty()) {
-    commands.bind(masked ? m_maskedSurface : m_surface, m_surfaceBindings);
-    commands.bindVertices(m_vertices.buffer);
-    commands.bindIndices(m_indices.buffer);
-    commands.drawIndexed(static_cast<std::uint32_t>(list.triangles.size()));
-  }
+  drawFaces(commands, list, masked ? m_maskedSurface : m_surface, m_surfaceBindings);
   commands.endPass();
-  commands.toSampled(m_faceDepth.image);
-  // Without edges the composition does not look at these.
-  if (!drawsEdges(list)) return;
-  commands.beginPass({{m_edgeCover.cleared(), m_edgeElement.overwritten(), m_edgeDepth.overwritten()},
-                      m_depthBuffer.kept()});
-  commands.bind(m_edge, m_edgeBindings);
-  commands.bindIndices(m_edgeIndices.buffer);
-  commands.drawIndexed(static_cast<std::uint32_t>(list.edges.size() * 3));
+  for (const Target* target : {&m_faceColour, &m_faceElement, &m_faceDepth, &m_faceKey})
+    commands.toSampled(target->image);
+  if (!drawsHiddenLayer(list)) return;
+  commands.beginPass(
+      {{m_hiddenElement.cleared(), m_hiddenDepth.cleared(nothing)}, m_hiddenDepthBuffer.cleared()});
+  drawFaces(commands, list, masked ? m_maskedHidden : m_hidden, m_hiddenBindings);
   commands.endPass();
 }
 
-void VulkanOverlayDevice::recordComposite(GpuCommands& commands) {
-  for (const Target* target : {&m_faceColour, &m_faceElement, &m_edgeCover, &m_edgeElement, &m_edgeDepth})
+/// The hidden edges first, so that where both cover a pixel the front one gives its name.
+void VulkanOverlayDevice::recordEdges(GpuCommands& commands, const DrawList& list) {
+  for (const Target* target : {&m_hiddenDepth, &m_hiddenElement}) commands.toSampled(target->image);
+  // Without edges the composition does not look at these.
+  if (!drawsEdges(list)) return;
+  const auto count = static_cast<std::uint32_t>(list.edges.size() * 3);
+  const bool drawsBehind = drawsHiddenLayer(list) && list.display.hidden != HiddenStyle::Hide;
+  if (drawsBehind) {
+    commands.beginPass({{m_edgeCover.cleared(), m_edgeElement.overwritten()}, {}});
+    commands.bind(m_edgeBehind, m_edgeBindings);
+    commands.bindIndices(m_edgeIndices.buffer);
+    commands.drawIndexed(count);
+    commands.endPass();
+  }
+  const bool needsDepth = std::any_of(list.styles.begin(), list.styles.end(),
+                                      [](const ElementStyle& style) { return style.edgesAlone != 0; });
+  std::vector<GpuPassTarget> targets{m_edgeCover.cleared(), m_edgeElement.overwritten()};
+  if (drawsBehind) targets = {m_edgeCover.kept(), m_edgeElement.kept()};
+  if (needsDepth) targets.push_back(m_edgeDepth.overwritten());
+  commands.beginPass({targets, m_depthBuffer.kept()});
+  commands.bind(needsDepth ? m_edgeWithDepth : m_edge, m_edgeBindings);
+  commands.bindIndices(m_edgeIndices.buffer);
+  commands.drawIndexed(count);
+  commands.endPass();
+}
+
+void VulkanOverlayDevice::recordComposite(GpuCommands& commands, const DrawList& list) {
+  for (const Target* target : {&m_edgeCover, &m_edgeElement, &m_edgeDepth})
     commands.toSampled(target->image);
   commands.beginPass(
       {{m_colour.overwritten(), m_element.overwritten(), m_depth.overwritten(), m_state.overwritten()}, {}});
@@ -310,17 +371,20 @@ void VulkanOverlayDevice::recordComposite(GpuCommands& commands) {
   commands.endPass();
   for (const Target* target : {&m_colour, &m_element, &m_depth, &m_state})
     commands.readBack(target->image, target->result);
+  if (drawsHiddenLayer(list)) commands.readBack(m_hiddenElement.image, m_hiddenElement.result);
 }
 
 void VulkanOverlayDevice::record(GpuCommands& commands, const DrawList& list) {
   recordUploads(commands, list);
-  recordDesign(commands, list);
-  recordComposite(commands);
+  recordFaces(commands, list);
+  recordEdges(commands, list);
+  recordComposite(commands, list);
 }
 
-OverlayDevice::Output VulkanOverlayDevice::collect(int width, int height) const {
+OverlayDevice::Output VulkanOverlayDevice::collect(const DrawList& list) const {
+  const int width = list.width, height = list.height;
   Output output{ColourImage(width, height), DepthImage(width, height), IdImage(width, height),
-                Image<std::uint8_t>(width, height)};
+                Image<std::uint8_t>(width, height), IdImage()};
   const auto take = [](auto& image, const Target& target) {
     copyInParallel(reinterpret_cast<std::byte*>(image.data()), target.result.data(),
                    target.image.byteCount());
@@ -329,6 +393,10 @@ OverlayDevice::Output VulkanOverlayDevice::collect(int width, int height) const 
   take(output.designDepth, m_depth);
   take(output.element, m_element);
   take(output.state, m_state);
+  if (drawsHiddenLayer(list)) {
+    output.hiddenElement = IdImage(width, height);
+    take(output.hiddenElement, m_hiddenElement);
+  }
   return output;
 }
 
@@ -345,7 +413,7 @@ Result<OverlayDevice::Output> VulkanOverlayDevice::draw(const DrawList& list) {
   if (auto ok = rebind(); !ok) return fail(ok.error());
   if (auto ok = m_device->run([&](GpuCommands& commands) { record(commands, list); }); !ok)
     return fail(ok.error());
-  return collect(list.width, list.height);
+  return collect(list);
 }
 
 }  // namespace

@@ -205,6 +205,93 @@ TEST_F(DeviceTest, TheThreeHiddenStylesDifferAndHidingShowsTheImage) {
   EXPECT_GE(raw, hidden * 97 / 100);
 }
 
+/// A slab flush with a scanned wall, and behind it a large bed with a small box inside, all of one camera.
+FrameDescription buriedFrame() {
+  FrameDescription frame;
+  frame.camera = wideAngleCamera(kWidth, kHeight);
+  frame.cameraFromWorld = RigidTransform::cameraLookingAt({0, -10, 0}, {0, 0, 0});
+  frame.image = stripedPicture(kWidth, kHeight);
+  BoxModel model(glm::dvec3(0));
+  model.box({0, 0.1f, 0}, {6, 0.2f, 4}, {180, 180, 180, 255});       // front at 10 m, back 0.2 m behind it
+  model.box({0, 2, 0}, {5, 3, 3}, {200, 160, 90, 255});              // the bed
+  model.box({0.5f, 2, 0}, {1.5f, 0.5f, 0.5f}, {40, 220, 220, 255});  // buried in it
+  frame.designs.push_back({model.made(), {}, {}, {}});
+  return frame;
+}
+
+TEST_F(DeviceTest, WhatLiesBuriedShowsThroughTheVisibleFaceAndTheSmallestShowsFirst) {
+  FrameDescription frame = buriedFrame();
+  const DepthImage scan(kWidth, kHeight, 10.0f);
+  ColourImage pictures[3];
+  OverlayDevice::Output out;
+  for (const HiddenStyle style : {HiddenStyle::Hide, HiddenStyle::Ghost, HiddenStyle::Dash}) {
+    frame.display.hidden = style;
+    out = draw(frame, &scan);
+    pictures[static_cast<int>(style)] = out.colour;
+    keep(out.colour, "buried-" + std::to_string(static_cast<int>(style)));
+    ASSERT_EQ(out.hiddenElement.size(), out.element.size()) << "counted whatever the style";
+  }
+  // What a ray through the pixel meets in closed form: a box is met where its front rectangle is, or a side.
+  const auto hits = [&](const glm::dvec3& ray, const glm::dvec3& centre, const glm::dvec3& size) {
+    double enter = 0, leave = 1e9;
+    for (int k = 0; k < 3; ++k) {
+      const double a = (centre[k] - size[k] / 2) / ray[k], b = (centre[k] + size[k] / 2) / ray[k];
+      enter = std::max(enter, std::min(a, b));
+      leave = std::min(leave, std::max(a, b));
+    }
+    return enter < leave;
+  };
+  int buried = 0, bed = 0, bare = 0, wrong = 0;
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) {
+      if (out.element.at(x, y) != 1) continue;
+      ASSERT_EQ(out.state.at(x, y), static_cast<std::uint8_t>(Visibility::Visible));
+      ASSERT_NEAR(out.designDepth.at(x, y), 10, 1e-4) << "the images speak of the front layer";
+      const glm::dvec3 ray = *frame.camera.unproject({x, y});
+      const bool meetsBox = hits(ray, {0.5, 0, 12}, {1.5, 0.5, 0.5}), meetsBed = hits(ray, {0, 0, 12}, {5, 3, 3});
+      const std::uint32_t expected = meetsBox ? 3 : meetsBed ? 2 : 0;
+      wrong += out.hiddenElement.at(x, y) != expected;
+      ++(meetsBox ? buried : meetsBed ? bed : bare);
+    }
+  EXPECT_GT(buried, 300);
+  EXPECT_GT(bed, 3000);
+  EXPECT_GT(bare, 3000);
+  EXPECT_LE(wrong, 40) << "a silhouette pixel may fall to either side";
+  EXPECT_GT(differingPixels(pictures[0], pictures[1], 4), 8000u) << "a ghost over the whole bed";
+  EXPECT_GT(differingPixels(pictures[1], pictures[2], 4), 3000u);
+  const Rgba8 hide = pictures[0].at(kWidth / 2 + 20, kHeight / 2), ghost = pictures[1].at(kWidth / 2 + 20, kHeight / 2);
+  EXPECT_LT(ghost.r, hide.r) << "tinted by the cyan box";
+  EXPECT_LT(std::abs(ghost.r - hide.r), 60) << "and still readable";
+}
+
+TEST_F(DeviceTest, ASolidAloneShowsNothingOfItsOwnInside) {
+  FrameDescription frame = buriedFrame();
+  frame.designs[0].elementVisible = {1, 0, 0};
+  const DepthImage scan(kWidth, kHeight, 10.0f);
+  frame.display.hidden = HiddenStyle::Hide;
+  const auto hide = draw(frame, &scan);
+  frame.display.hidden = HiddenStyle::Ghost;
+  const auto ghost = draw(frame, &scan);
+  for (std::size_t i = 0; i < ghost.hiddenElement.size(); ++i) ASSERT_EQ(ghost.hiddenElement.data()[i], 0u);
+  EXPECT_EQ(differingPixels(hide.colour, ghost.colour, 2), 0u);
+}
+
+TEST_F(DeviceTest, SpecksOfTheScanAreStyledAsWhatIsAroundThemAndReportedAsTheyAre) {
+  FrameDescription frame = buriedFrame();
+  frame.designs[0].elementVisible = {1, 0, 0};
+  DepthImage scan(kWidth, kHeight, 10.0f);
+  const auto clean = draw(frame, &scan);
+  scan.at(240, 160) = std::numeric_limits<float>::quiet_NaN();
+  scan.at(200, 150) = 3.0f;
+  const auto specked = draw(frame, &scan);
+  EXPECT_EQ(specked.state.at(240, 160), static_cast<std::uint8_t>(Visibility::Unknown));
+  EXPECT_EQ(specked.state.at(200, 150), static_cast<std::uint8_t>(Visibility::Hidden));
+  EXPECT_EQ(differingPixels(clean.colour, specked.colour, 2), 0u);
+  for (int y = 140; y < 180; ++y)
+    for (int x = 220; x < 260; ++x) scan.at(x, y) = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_GT(differingPixels(clean.colour, draw(frame, &scan).colour, 8), 1000u) << "an area is no speck";
+}
+
 TEST_F(DeviceTest, UnknownIsDrawnInAShapeOfItsOwn) {
   FrameDescription frame = boxesFrame();
   frame.display.hidden = HiddenStyle::Dash;
