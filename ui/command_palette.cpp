@@ -39,6 +39,8 @@ CommandPalette::CommandPalette(const Actions& actions, QWidget* window) : QFrame
   m_edit->setPlaceholderText(tr("Find a command"));
   m_list = new QListWidget;
   m_list->setFocusPolicy(Qt::NoFocus);
+  m_list->setIconSize({16, 16});
+  m_list->setUniformItemSizes(true);
   layout->addWidget(m_edit);
   layout->addWidget(m_list);
   m_edit->installEventFilter(this);
@@ -74,9 +76,13 @@ void CommandPalette::refill() {
   m_list->clear();
   for (const Row& row : rows) {
     const QString key = row.action->shortcut().toString(QKeySequence::NativeText);
-    auto* item = new QListWidgetItem(row.action->icon(),
+    // A blank of the same size keeps the names in one column.
+    QPixmap blank(16, 16);
+    blank.fill(Qt::transparent);
+    auto* item = new QListWidgetItem(row.action->icon().isNull() ? QIcon(blank) : row.action->icon(),
                                      key.isEmpty() ? row.action->text() : QStringLiteral("%1    %2").arg(row.action->text(), key));
     item->setToolTip(row.action->toolTip());
+    item->setSizeHint({0, 26});
     item->setData(Qt::UserRole, row.action->objectName());
     m_list->addItem(item);
   }

@@ -80,7 +80,10 @@ MainWindow::MainWindow(QWidget* parent)
 }
 
 MainWindow::~MainWindow() {
-  // Widgets ask the session until they are gone, so they go first.
+  // Widgets ask the session until they are gone (a field that loses the focus hands its figure over), so
+  // they go first.
+  hide();
+  for (QToolBar* bar : findChildren<QToolBar*>(QString(), Qt::FindDirectChildrenOnly)) delete bar;
   delete m_export;
   delete m_palette;
   delete takeCentralWidget();

@@ -10,8 +10,9 @@
 #include <QPainter>
 #include <QPalette>
 #include <QRegularExpression>
-#include <QStyleFactory>
 #include <QSvgRenderer>
+
+#include "ui/theme_style.h"
 
 namespace alidade {
 
@@ -123,7 +124,7 @@ void applyTheme(QApplication& application, Theme theme) {
   g_theme = theme;
   g_colours = coloursOf(theme);
   static const bool styled = [&] {
-    application.setStyle(QStyleFactory::create(QStringLiteral("Fusion")));
+    application.setStyle(new ThemeStyle);
     return true;
   }();
   Q_UNUSED(styled);
