@@ -49,28 +49,39 @@ float dots(vec2 at, float period) {
 
 vec3 designColour(vec3 c) { return frame.picture.z > 0.5 ? vec3(luminance(c)) : c; }
 
-// What a pixel of the front layer is drawn as: its own state, but for specks. Where hardly a pixel of the
-// same element around agrees, the scan's noise spoke, and the pixel follows the others.
+// Adds what the scan says of the same element at eight pixels: the corners or the sides of a square, 2 r wide.
+uvec4 votesAround(ivec2 at, uint mine, int r) {
+  ivec2 last = ivec2(frame.lens.domain.zw) - 1;
+  uvec4 votes = uvec4(0u);
+  for (int i = 0; i < 9; ++i) {
+    if (i == 4) continue;
+    uint other = texelFetch(faceKey, clamp(at + r * ivec2(i % 3 - 1, i / 3 - 1), ivec2(0), last), 0).r;
+    if ((other >> 2) == mine) ++votes[other & 3u];
+  }
+  return votes;
+}
+
+// What a pixel of the front layer is drawn as: its own state, but for specks, where the scan's noise spoke.
+// They follow what most of the same element is around them. What is seen or hidden in more than a speck
+// stays, so that thin things stay in front; what is unknown or barely hidden always follows.
 uint drawnState(ivec2 at, uint key) {
   uint own = key & 3u, mine = key >> 2;
   ivec2 last = ivec2(frame.lens.domain.zw) - 1;
-  uvec3 votes = uvec3(0u);
-  for (int i = 0; i < 4; ++i) {
-    ivec2 side = (i & 1) != 0 ? ivec2(2, 0) : ivec2(0, 2);
+  bool isCalm = own != barelyHidden;
+  for (int i = 0; i < 4 && isCalm; ++i) {
+    ivec2 side = (i & 1) != 0 ? ivec2(1, 0) : ivec2(0, 1);
     uint other = texelFetch(faceKey, clamp(at + ((i & 2) != 0 ? side : -side), ivec2(0), last), 0).r;
-    if ((other >> 2) == mine) ++votes[min(other & 3u, 2u)];
+    isCalm = other == key || (other >> 2) != mine;
   }
+  if (isCalm && own != stateUnknown) return own;
+  uvec4 votes = votesAround(at, mine, 1);
+  if (own == stateVisible && votes.x > 2u) return own;
+  if (own == stateHidden && votes.y + votes.w > 3u) return own;
+  votes += votesAround(at, mine, 3) + votesAround(at, mine, 5);
   uint count = votes.x + votes.y + votes.z;
-  if (votes[min(own, 2u)] == count) return own;
-  for (int i = 0; i < 8; ++i) {
-    ivec2 corner = ivec2((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1) * (1 + (i >> 2));
-    uint other = texelFetch(faceKey, clamp(at + corner, ivec2(0), last), 0).r;
-    if ((other >> 2) == mine) ++votes[min(other & 3u, 2u)];
-  }
-  count = votes.x + votes.y + votes.z;
   for (uint other = 0u; other < 3u; ++other)
-    if (other != own && 2u * votes[other] > count) return other;
-  return own;
+    if (2u * votes[other] > count) return other;
+  return own == barelyHidden ? stateHidden : own;
 }
 
 vec3 overFace(vec3 under, vec4 face, uint state) {
@@ -147,7 +158,7 @@ void main() {
   float depth = texelFetch(faceDepth, at, 0).r;
   if (key != 0u) {
     element = texelFetch(faceElement, at, 0).r;
-    state = key & 3u;
+    state = stateOfKey(key);
     if (frame.view.y > 0.5) {
       uint drawn = frame.scan.x > 0.5 ? drawnState(at, key) : state;
       uint behind = drawn == stateHidden ? element : 0u;

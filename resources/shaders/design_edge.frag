@@ -51,21 +51,25 @@ bool isBehindFaces() {
 }
 
 // An edge is where the scan's depth jumps and its noise decides: what is drawn follows the faces that it
-// bounds, judged a little aside of the line and along it. Only an edge of no face asks the scan itself.
+// bounds, judged aside of the line and along it, in doubt for what is seen. Only an edge of no face asks
+// the scan itself.
 uint smoothState() {
   vec2 line = gl_FragCoord.xy - across * sideways;
   vec2 forwards = vec2(sideways.y, -sideways.x);
-  uint mine = keyOf(element, 0u) >> 2;
-  uvec3 votes = uvec3(0u);
-  for (int i = 0; i < 8; ++i) {
-    float side = (i & 1) != 0 ? 2.0 : -2.0;
-    vec2 at = line + frame.lines.z * (side * sideways + (2.0 * float(i >> 1) - 3.0) * 1.5 * forwards);
+  uint mine = 1u + element % 63u;
+  uvec4 votes = uvec4(0u);
+  for (int i = 0; i < 16; ++i) {
+    float side = ((i & 1) != 0 ? 1.0 : -1.0) * ((i & 2) != 0 ? 2.0 : 5.0);
+    float ahead = 2.0 * float(i >> 2) - 3.0;
+    vec2 at = line + frame.lines.z * (side * sideways + 3.0 * ahead * forwards);
     uint key = texelFetch(faceKey, clampedToPicture(ivec2(at)), 0).r;
-    if ((key >> 2) == mine) ++votes[min(key & 3u, 2u)];
+    if ((key >> 2) == mine) ++votes[key & 3u];
   }
-  if (votes.x + votes.y + votes.z == 0u)
+  uint count = votes.x + votes.y + votes.z;
+  if (count + votes.w == 0u)
     return stateOf(depth - frame.scan.y, texelFetch(scanDepth, clampedToPicture(ivec2(line)), 0).r);
-  if (votes.x >= votes.y && votes.x >= votes.z) return stateVisible;
+  if (count == 0u) return stateHidden;
+  if (3u * votes.x >= count) return stateVisible;
   return votes.y >= votes.z ? stateHidden : stateUnknown;
 }
 

@@ -32,5 +32,5 @@ void main() {
   outColour = vec4(min(colour.rgb + highlight, vec3(1.0)), colour.a);
   outElement = element;
   outDepth = position.z;
-  outKey = keyOf(element, stateOf(position.z, texelFetch(scanDepth, ivec2(gl_FragCoord.xy), 0).r));
+  outKey = keyOf(element, position.z, texelFetch(scanDepth, ivec2(gl_FragCoord.xy), 0).r);
 }

@@ -46,10 +46,20 @@ uint stateOf(float z, float scanDepth) {
   return z <= scanDepth + frame.scan.y + 0.0005 * z ? stateVisible : stateHidden;
 }
 
-// A pixel of the front design layer in a byte: state in the low bits, above them a mark that tells
-// neighbouring elements apart (not all elements); 0 where there is no design.
-uint keyOf(uint element, uint state) { return state | ((1u + element % 63u) << 2); }
-uint stateOfKey(uint key) { return key == 0u ? stateOutside : key & 3u; }
+// A pixel of the front design layer in a byte: what the scan says in the low bits, above them a mark that
+// tells neighbouring elements apart (not all elements); 0 where there is no design. Hidden by no more than
+// thrice the tolerance is told apart: it is reported as hidden, but does not decide how others are drawn.
+const uint barelyHidden = 3u;
+
+uint keyOf(uint element, float z, float scanDepth) {
+  uint state = stateOf(z, scanDepth);
+  if (state == stateHidden && stateOf(z - 2.0 * frame.scan.y, scanDepth) == stateVisible) state = barelyHidden;
+  return state | ((1u + element % 63u) << 2);
+}
+uint stateOfKey(uint key) {
+  uint state = key & 3u;
+  return key == 0u ? stateOutside : (state == barelyHidden ? stateHidden : state);
+}
 
 float luminance(vec3 c) { return dot(c, vec3(0.299, 0.587, 0.114)); }
 
