@@ -65,6 +65,7 @@ OcclusionDepth occlusionDepth(const std::vector<SplatLayer>& layers, const Camer
   if (camera.width() <= 0 || camera.height() <= 0) return occlusion;
   DotImage dots = drawDots(layers, camera, cameraFromWorld);
   removeHiddenDots(dots);
+  peelToFront(dots);
   fillBetweenDots(dots);
   for (const SplatLayer& layer : layers) occlusion.pointsDrawn += layer.selection.pointCount;
   occlusion.depth = DepthImage(camera.width(), camera.height());

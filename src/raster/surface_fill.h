@@ -28,6 +28,10 @@ struct DotImage {
 /// hidden-point operators of Katz 2007 and Pintus 2011).
 void removeHiddenDots(DotImage& dots);
 
+/// Blanks dots behind a surface that its own dots show only together: the block of cells around a cell is peeled,
+/// whatever lies behind the mean plane dropped again and again, until a tight plane is left.
+void peelToFront(DotImage& dots);
+
 /// Fills between dots from fine cells to coarse ones: a plane in inverse depth is fitted to the dots of 3×3
 /// cells, or of a quarter of them where an edge spoils the whole; a pixel is filled where the fit
 /// is tight and dots lie around it. Cells coarser than the dots' own spacing asks for fill nothing: a

@@ -224,8 +224,8 @@ TEST(Visibility, ComparesDepthWithToleranceAndKeepsItsFourAnswersApart) {
   depth.at(1, 1) = std::numeric_limits<float>::quiet_NaN();
   depth.at(2, 1) = std::numeric_limits<float>::infinity();
   EXPECT_EQ(visibilityAt(depth, {0, 0}, 9.0, 0.02), Visibility::Visible);
-  EXPECT_EQ(visibilityAt(depth, {0, 0}, 10.039, 0.02), Visibility::Visible);
-  EXPECT_EQ(visibilityAt(depth, {0, 0}, 10.041, 0.02), Visibility::Hidden);
+  EXPECT_EQ(visibilityAt(depth, {0, 0}, 10.0249, 0.02), Visibility::Visible);
+  EXPECT_EQ(visibilityAt(depth, {0, 0}, 10.0251, 0.02), Visibility::Hidden);
   EXPECT_EQ(visibilityAt(depth, {1.4, 0.6}, 5.0, 0.02), Visibility::Unknown);
   EXPECT_EQ(visibilityAt(depth, {2, 1}, 1e9, 0.02), Visibility::Visible);
   EXPECT_EQ(visibilityAt(depth, {-0.51, 0}, 5.0, 0.02), Visibility::Outside);
