@@ -16,7 +16,8 @@ namespace alidade {
 
 int fitOf(const QString& name, const QString& typed) {
   if (typed.isEmpty()) return 1;
-  if (name.contains(typed, Qt::CaseInsensitive)) return name.startsWith(typed, Qt::CaseInsensitive) ? 1000 : 500;
+  if (name.contains(typed, Qt::CaseInsensitive))
+    return name.startsWith(typed, Qt::CaseInsensitive) ? 1000 : 500;
   int score = 1;
   qsizetype at = 0;
   for (const QChar letter : typed.simplified()) {
@@ -79,8 +80,9 @@ void CommandPalette::refill() {
     // A blank of the same size keeps the names in one column.
     QPixmap blank(16, 16);
     blank.fill(Qt::transparent);
-    auto* item = new QListWidgetItem(row.action->icon().isNull() ? QIcon(blank) : row.action->icon(),
-                                     key.isEmpty() ? row.action->text() : QStringLiteral("%1    %2").arg(row.action->text(), key));
+    auto* item = new QListWidgetItem(
+        row.action->icon().isNull() ? QIcon(blank) : row.action->icon(),
+        key.isEmpty() ? row.action->text() : QStringLiteral("%1    %2").arg(row.action->text(), key));
     item->setToolTip(row.action->toolTip());
     item->setSizeHint({0, 26});
     item->setData(Qt::UserRole, row.action->objectName());

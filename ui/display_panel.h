@@ -30,10 +30,10 @@ class DisplayPanel : public QScrollArea {
   using Get = std::function<double(const DisplaySettings&)>;
   using Set = std::function<void(DisplaySettings&, double)>;
   void check(QFormLayout* form, const QString& name, const QString& tip, bool DisplaySettings::*member);
-  void number(QFormLayout* form, const QString& name, const QString& tip, const QString& unit, double low, double high,
-              double step, int decimals, const Get& get, const Set& set);
-  void choice(QFormLayout* form, const QString& name, const QString& tip, const QStringList& names, const Get& get,
-              const Set& set);
+  void number(QFormLayout* form, const QString& name, const QString& tip, const QString& unit, double low,
+              double high, double step, int decimals, const Get& get, const Set& set);
+  void choice(QFormLayout* form, const QString& name, const QString& tip, const QStringList& names,
+              const Get& get, const Set& set);
   QFormLayout* section(const QString& title);
   void refresh();
   void apply(const std::function<void(DisplaySettings&)>& edit, bool dragging);

@@ -22,8 +22,8 @@ namespace alidade {
 namespace {
 
 QImage copyOf(const ColourImage& image) {
-  return QImage(reinterpret_cast<const uchar*>(image.data()), image.width(), image.height(), image.width() * 4,
-                QImage::Format_RGBX8888)
+  return QImage(reinterpret_cast<const uchar*>(image.data()), image.width(), image.height(),
+                image.width() * 4, QImage::Format_RGBX8888)
       .copy();
 }
 
@@ -33,8 +33,9 @@ QString proposedPath(const Session& session) {
                                     QStandardPaths::writableLocation(QStandardPaths::PicturesLocation))
                              .toString();
   const Frame* frame = session.currentFrame();
-  const QString name = QStringLiteral("%1 %2.png").arg(text(session.project()->name),
-                                                        frame ? QFileInfo(text(frame->name)).completeBaseName() : QString());
+  const QString name = QStringLiteral("%1 %2.png")
+                           .arg(text(session.project()->name),
+                                frame ? QFileInfo(text(frame->name)).completeBaseName() : QString());
   return QDir(folder).filePath(name.simplified().replace('/', '-'));
 }
 
@@ -68,7 +69,8 @@ QSize ExportDialog::wantedSize() const {
   if (!camera || camera->camera.width() <= 0) return {};
   const int width = m_form->size->currentData().toInt();
   if (width == 0) return {camera->camera.width(), camera->camera.height()};
-  return {width, std::max(1, static_cast<int>(std::lround(1.0 * width * camera->camera.height() / camera->camera.width())))};
+  return {width, std::max(1, static_cast<int>(std::lround(1.0 * width * camera->camera.height() /
+                                                          camera->camera.width())))};
 }
 
 void ExportDialog::requestPreview() {
@@ -96,15 +98,18 @@ void ExportDialog::requestPreview() {
     }
     const QString problem = shared ? QString() : errorText(rendered.error());
     // The session outlives every dialog and delivers; whether this one still stands is asked there.
-    QMetaObject::invokeMethod(session, [self, serial, shared, preview, problem] {
-      if (!self || self->m_serial != serial) return;
-      self->m_frame = shared;
-      self->m_preview = preview;
-      self->m_shownSerial = serial;
-      self->m_form->state->setText(problem);
-      self->m_form->save->setEnabled(shared != nullptr);
-      self->showPreview();
-    }, Qt::QueuedConnection);
+    QMetaObject::invokeMethod(
+        session,
+        [self, serial, shared, preview, problem] {
+          if (!self || self->m_serial != serial) return;
+          self->m_frame = shared;
+          self->m_preview = preview;
+          self->m_shownSerial = serial;
+          self->m_form->state->setText(problem);
+          self->m_form->save->setEnabled(shared != nullptr);
+          self->showPreview();
+        },
+        Qt::QueuedConnection);
   });
 }
 
@@ -114,7 +119,8 @@ void ExportDialog::showPreview() {
     return;
   }
   const double ratio = devicePixelRatioF();
-  QImage scaled = m_preview.scaled(m_form->preview->size() * ratio, Qt::KeepAspectRatio, Qt::SmoothTransformation);
+  QImage scaled =
+      m_preview.scaled(m_form->preview->size() * ratio, Qt::KeepAspectRatio, Qt::SmoothTransformation);
   scaled.setDevicePixelRatio(ratio);
   m_form->preview->setPixmap(QPixmap::fromImage(scaled));
   m_form->dimensions->setText(QStringLiteral("%1 × %2 px").arg(m_preview.width()).arg(m_preview.height()));
@@ -126,7 +132,8 @@ void ExportDialog::resizeEvent(QResizeEvent* event) {
 }
 
 void ExportDialog::browse() {
-  const QString path = QFileDialog::getSaveFileName(this, tr("Export picture"), m_form->path->text(), tr("PNG pictures (*.png)"));
+  const QString path = QFileDialog::getSaveFileName(this, tr("Export picture"), m_form->path->text(),
+                                                    tr("PNG pictures (*.png)"));
   if (!path.isEmpty()) m_form->path->setText(path);
 }
 

@@ -69,10 +69,14 @@ QString formatPercent(double fraction) {
 
 QString poseSourceName(PoseSource source) {
   switch (source) {
-    case PoseSource::None: return QStringLiteral("No pose");
-    case PoseSource::File: return QStringLiteral("From file");
-    case PoseSource::Interpolated: return QStringLiteral("Interpolated");
-    case PoseSource::Refined: return QStringLiteral("Refined");
+    case PoseSource::None:
+      return QStringLiteral("No pose");
+    case PoseSource::File:
+      return QStringLiteral("From file");
+    case PoseSource::Interpolated:
+      return QStringLiteral("Interpolated");
+    case PoseSource::Refined:
+      return QStringLiteral("Refined");
   }
   return {};
 }
@@ -91,7 +95,9 @@ QString poseSummary(const Frame& frame) {
     const bool known = frame.poseSource != PoseSource::None;
     return poseSourceName(frame.poseSource) + (known ? QStringLiteral(", accuracy not known") : QString());
   }
-  return QStringLiteral("%1, %2 mm at 10 m").arg(poseSourceName(frame.poseSource)).arg(mm, 0, 'f', mm < 9.95 ? 1 : 0);
+  return QStringLiteral("%1, %2 mm at 10 m")
+      .arg(poseSourceName(frame.poseSource))
+      .arg(mm, 0, 'f', mm < 9.95 ? 1 : 0);
 }
 
 QString text(const std::string& utf8) {

@@ -85,7 +85,8 @@ bool HoldKeys::eventFilter(QObject* watched, QEvent* event) {
     case QEvent::WindowDeactivate:
       if (watched == &m_window && m_held) release();
       break;
-    default: break;
+    default:
+      break;
   }
   return QObject::eventFilter(watched, event);
 }

@@ -27,14 +27,16 @@ int JobList::start(const QString& title, std::function<Deliver(const Progress&)>
   job.title = title;
   job.progress = Progress([this, id](double fraction, std::string_view what) {
     const QString step = QString::fromUtf8(what.data(), static_cast<qsizetype>(what.size()));
-    QMetaObject::invokeMethod(this, [this, id, fraction, step] { report(id, fraction, step); }, Qt::QueuedConnection);
+    QMetaObject::invokeMethod(
+        this, [this, id, fraction, step] { report(id, fraction, step); }, Qt::QueuedConnection);
   });
   job.clock.start();
   m_jobs.push_back(job);
   emit changed();
   m_threads.start([this, id, progress = job.progress, work = std::move(work)] {
     Deliver deliver = work(progress);
-    QMetaObject::invokeMethod(this, [this, id, deliver] { finish(id, deliver); }, Qt::QueuedConnection);
+    QMetaObject::invokeMethod(
+        this, [this, id, deliver] { finish(id, deliver); }, Qt::QueuedConnection);
   });
   return id;
 }

@@ -53,7 +53,7 @@ class JobList : public QObject {
   void cancelAll();
 
  signals:
-  void changed();          ///< a job came, went or moved on
+  void changed();  ///< a job came, went or moved on
   void finished(int id);
 
  private:

@@ -73,7 +73,8 @@ void JobStrip::refresh() {
     line.bar->setValue(static_cast<int>(job.fraction * 1000));
     QString time = QStringLiteral("%1 %").arg(job.fraction * 100, 0, 'f', 0);
     // An estimate from a start is worth nothing; from a tenth on it is.
-    if (job.fraction > 0.1 && secs > 2) time += tr(", %1 s left").arg(secs * (1 - job.fraction) / job.fraction, 0, 'f', 0);
+    if (job.fraction > 0.1 && secs > 2)
+      time += tr(", %1 s left").arg(secs * (1 - job.fraction) / job.fraction, 0, 'f', 0);
     line.time->setText(time);
     line.cancel->setEnabled(!job.cancelling);
   }

@@ -42,7 +42,8 @@ KeysPage::KeysPage(QWidget* parent) : QDialog(parent) {
   row(tr("Hold V"), tr("Leaves the residuals out"));
   row(tr("Hold D, hold P"), tr("Move the mouse to change density or point size; Shift is slow"));
   for (const ActionSpec& spec : actionTable())
-    if (*spec.shortcut) row(QKeySequence(QString::fromLatin1(spec.shortcut)).toString(QKeySequence::NativeText), tr(spec.tip));
+    if (*spec.shortcut)
+      row(QKeySequence(QString::fromLatin1(spec.shortcut)).toString(QKeySequence::NativeText), tr(spec.tip));
   table->resizeColumnToContents(0);
   table->horizontalHeader()->setStretchLastSection(true);
   layout->addWidget(table);

@@ -17,9 +17,9 @@ namespace alidade {
 
 namespace {
 
-constexpr double kSide = 168.0;       // of the square, screen pixels
-constexpr double kProfile = 46.0;     // height of the depth profile below it
-constexpr double kSpanRawPx = 21.0;   // raw pixels across the square at zoom 1
+constexpr double kSide = 168.0;      // of the square, screen pixels
+constexpr double kProfile = 46.0;    // height of the depth profile below it
+constexpr double kSpanRawPx = 21.0;  // raw pixels across the square at zoom 1
 
 QRectF placeBeside(const OverlayView& view, const QPointF& cursor) {
   QRectF box(cursor + QPointF(28, 28), QSizeF(kSide, kSide + kProfile));
@@ -30,13 +30,15 @@ QRectF placeBeside(const OverlayView& view, const QPointF& cursor) {
   return box;
 }
 
-void paintProfile(OverlayView& view, QPainter& painter, const QRectF& area, const glm::dvec2& raw, double span) {
+void paintProfile(OverlayView& view, QPainter& painter, const QRectF& area, const glm::dvec2& raw,
+                  double span) {
   painter.fillRect(area, QColor(24, 24, 24));
   constexpr int kSteps = 84;
   std::vector<double> depth(kSteps);
   double low = 1e300, high = -1e300;
   for (int i = 0; i < kSteps; ++i) {
-    depth[static_cast<std::size_t>(i)] = view.probe().scanDepth(raw + glm::dvec2((i + 0.5) / kSteps * span - span / 2, 0));
+    depth[static_cast<std::size_t>(i)] =
+        view.probe().scanDepth(raw + glm::dvec2((i + 0.5) / kSteps * span - span / 2, 0));
     if (!std::isfinite(depth[static_cast<std::size_t>(i)])) continue;
     low = std::min(low, depth[static_cast<std::size_t>(i)]);
     high = std::max(high, depth[static_cast<std::size_t>(i)]);
@@ -85,7 +87,8 @@ void paintMagnifier(OverlayView& view, QPainter& painter) {
   painter.save();
   painter.setRenderHint(QPainter::SmoothPixmapTransform, false);
   painter.fillRect(square, Qt::black);
-  const int left = static_cast<int>(std::floor(raw->x - span / 2)), top = static_cast<int>(std::floor(raw->y - span / 2));
+  const int left = static_cast<int>(std::floor(raw->x - span / 2)),
+            top = static_cast<int>(std::floor(raw->y - span / 2));
   const int count = static_cast<int>(std::ceil(span)) + 2;
   QImage cut(count, count, QImage::Format_RGB32);
   cut.fill(Qt::black);

@@ -45,7 +45,9 @@ constexpr int kLayoutVersion = 1;
 }  // namespace
 
 MainWindow::MainWindow(QWidget* parent)
-    : QMainWindow(parent), m_session(std::make_unique<Session>()), m_measurements(std::make_shared<MeasuredDistances>()) {
+    : QMainWindow(parent),
+      m_session(std::make_unique<Session>()),
+      m_measurements(std::make_shared<MeasuredDistances>()) {
   setObjectName(QStringLiteral("mainWindow"));
   setAcceptDrops(true);
   setDockNestingEnabled(true);
@@ -72,7 +74,8 @@ MainWindow::MainWindow(QWidget* parent)
   (*m_actions)[Command::ToolSelect]->trigger();
   (*m_actions)[Command::ShowOverlay]->setChecked(true);
   const QSettings settings;
-  if (settings.contains(QStringLiteral("geometry"))) restoreGeometry(settings.value(QStringLiteral("geometry")).toByteArray());
+  if (settings.contains(QStringLiteral("geometry")))
+    restoreGeometry(settings.value(QStringLiteral("geometry")).toByteArray());
   showWorkspace(false);
   refreshTitle();
   refreshEnabled();
@@ -110,7 +113,8 @@ void MainWindow::buildCentre() {
   auto* line = new StatusLine(*m_session, *m_overlay);
   statusBar()->setSizeGripEnabled(false);
   statusBar()->addPermanentWidget(line, 1);
-  connect(line, &StatusLine::messagesWanted, this, [this] { (*m_actions)[Command::ShowMessages]->setChecked(true); });
+  connect(line, &StatusLine::messagesWanted, this,
+          [this] { (*m_actions)[Command::ShowMessages]->setChecked(true); });
 }
 
 void MainWindow::buildToolBar() {
@@ -127,11 +131,14 @@ void MainWindow::buildToolBar() {
   m_toolBar->addSeparator();
   m_toolBar->addAction(a[Command::CycleHidden]);
   m_toolBar->addSeparator();
-  m_density = new ValueSlider(tr("Density"), QStringLiteral("density"), {0, 1, 1, false, 100, 0, QStringLiteral("%")});
+  m_density = new ValueSlider(tr("Density"), QStringLiteral("density"),
+                              {0, 1, 1, false, 100, 0, QStringLiteral("%")});
   m_density->setObjectName(QStringLiteral("densitySlider"));
-  m_density->setToolTip(tr("How many of the scan's points are drawn. Drag; Shift is slow; double click for automatic; "
-                           "type a figure (hold D)"));
-  m_pointSize = new ValueSlider(tr("Point size"), QStringLiteral("pointsize"), {0.2, 8, 1, true, 1, 2, QStringLiteral("×")});
+  m_density->setToolTip(
+      tr("How many of the scan's points are drawn. Drag; Shift is slow; double click for automatic; "
+         "type a figure (hold D)"));
+  m_pointSize = new ValueSlider(tr("Point size"), QStringLiteral("pointsize"),
+                                {0.2, 8, 1, true, 1, 2, QStringLiteral("×")});
   m_pointSize->setObjectName(QStringLiteral("pointSizeSlider"));
   m_pointSize->setToolTip(tr("Size of the points against the automatic one (hold P)"));
   m_toolBar->addWidget(m_density);
@@ -140,7 +147,8 @@ void MainWindow::buildToolBar() {
   auto* gap = new QWidget;
   gap->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Preferred);
   m_toolBar->addWidget(gap);
-  for (const Command view : {Command::ShowOverlay, Command::ShowScene, Command::ShowBoth}) m_toolBar->addAction(a[view]);
+  for (const Command view : {Command::ShowOverlay, Command::ShowScene, Command::ShowBoth})
+    m_toolBar->addAction(a[view]);
   for (QToolButton* button : m_toolBar->findChildren<QToolButton*>()) button->setFocusPolicy(Qt::TabFocus);
   connect(m_density, &ValueSlider::changed, this, [this](double value, bool dragging) {
     editDisplay([&](DisplaySettings& d) { d.density = value; }, dragging);
@@ -150,7 +158,8 @@ void MainWindow::buildToolBar() {
   });
 }
 
-QDockWidget* MainWindow::dock(const QString& title, const QString& name, QWidget* content, Qt::DockWidgetArea area) {
+QDockWidget* MainWindow::dock(const QString& title, const QString& name, QWidget* content,
+                              Qt::DockWidgetArea area) {
   auto* dock = new QDockWidget(title, this);
   dock->setObjectName(name);
   dock->setWidget(content);
@@ -163,12 +172,17 @@ void MainWindow::buildDocks() {
   m_projectPanel = new ProjectPanel(*m_session, *m_tree);
   m_resectionPanel = new ResectionPanel(*m_session, *m_refinement, *m_overlay);
   m_projectDock = dock(tr("Project"), QStringLiteral("projectDock"), m_projectPanel, Qt::LeftDockWidgetArea);
-  m_propertiesDock = dock(tr("Properties"), QStringLiteral("propertiesDock"), new PropertiesPanel(*m_session), Qt::RightDockWidgetArea);
-  m_displayDock = dock(tr("Display"), QStringLiteral("displayDock"), new DisplayPanel(*m_session), Qt::RightDockWidgetArea);
-  m_resectionDock = dock(tr("Refine pose"), QStringLiteral("resectionDock"), m_resectionPanel, Qt::RightDockWidgetArea);
-  m_messageDock = dock(tr("Messages"), QStringLiteral("messageDock"), new MessagePanel(m_session->messages()), Qt::BottomDockWidgetArea);
+  m_propertiesDock = dock(tr("Properties"), QStringLiteral("propertiesDock"), new PropertiesPanel(*m_session),
+                          Qt::RightDockWidgetArea);
+  m_displayDock = dock(tr("Display"), QStringLiteral("displayDock"), new DisplayPanel(*m_session),
+                       Qt::RightDockWidgetArea);
+  m_resectionDock =
+      dock(tr("Refine pose"), QStringLiteral("resectionDock"), m_resectionPanel, Qt::RightDockWidgetArea);
+  m_messageDock = dock(tr("Messages"), QStringLiteral("messageDock"), new MessagePanel(m_session->messages()),
+                       Qt::BottomDockWidgetArea);
 
-  // The strip and the jobs are no panels that anyone closes: a dock without a title keeps them below all others.
+  // The strip and the jobs are no panels that anyone closes: a dock without a title keeps them below all
+  // others.
   auto* bottom = new QWidget;
   auto* layout = new QVBoxLayout(bottom);
   layout->setContentsMargins(0, 0, 0, 0);
@@ -181,7 +195,8 @@ void MainWindow::buildDocks() {
   bar->setMovable(false);
   bar->setContextMenuPolicy(Qt::PreventContextMenu);
   bar->addWidget(bottom);
-  bar->setStyleSheet(QStringLiteral("QToolBar { padding: 0; border-bottom: 0; border-top: 1px solid palette(mid); }"));
+  bar->setStyleSheet(
+      QStringLiteral("QToolBar { padding: 0; border-bottom: 0; border-top: 1px solid palette(mid); }"));
   bottom->setSizePolicy(QSizePolicy::Expanding, QSizePolicy::Preferred);
   addToolBar(Qt::BottomToolBarArea, bar);
   defaultLayout();
@@ -245,7 +260,8 @@ void MainWindow::refreshTitle() {
     return;
   }
   const Project& project = *m_session->project();
-  const QString name = project.path.empty() ? text(project.name) : QFileInfo(text(project.path)).completeBaseName();
+  const QString name =
+      project.path.empty() ? text(project.name) : QFileInfo(text(project.path)).completeBaseName();
   setWindowTitle(tr("%1[*] – Alidade").arg(name.isEmpty() ? tr("Untitled") : name));
   setWindowModified(m_session->modified());
 }

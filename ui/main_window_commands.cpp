@@ -45,21 +45,43 @@ void MainWindow::buildMenus() {
   const auto fill = [&](const QString& title, std::initializer_list<int> rows) {
     QMenu* menu = menuBar()->addMenu(title);
     for (const int row : rows) {
-      if (row < 0) menu->addSeparator();
-      else menu->addAction(a[static_cast<Command>(row)]);
+      if (row < 0)
+        menu->addSeparator();
+      else
+        menu->addAction(a[static_cast<Command>(row)]);
     }
     return menu;
   };
   const auto id = [](Command c) { return static_cast<int>(c); };
-  QMenu* file = fill(tr("&File"), {id(C::NewProject), id(C::OpenProject), id(C::AddFiles), id(C::OpenSample), -1, id(C::Save),
-                                   id(C::SaveAs), id(C::CloseProject), -1, id(C::ExportPicture), -1, id(C::Quit)});
+  QMenu* file = fill(tr("&File"), {id(C::NewProject), id(C::OpenProject), id(C::AddFiles), id(C::OpenSample),
+                                   -1, id(C::Save), id(C::SaveAs), id(C::CloseProject), -1,
+                                   id(C::ExportPicture), -1, id(C::Quit)});
   m_recentMenu = new QMenu(tr("Open recent"), this);
   file->insertMenu(a[C::AddFiles], m_recentMenu);
-  fill(tr("&Edit"), {id(C::Undo), id(C::Redo), -1, id(C::Delete), id(C::CopyCoordinates), id(C::ClearSelection), -1, id(C::CommandPalette)});
-  QMenu* view = fill(tr("&View"), {id(C::ShowOverlay), id(C::ShowScene), id(C::ShowBoth), id(C::CycleView), -1, id(C::Fit), id(C::ActualSize),
-                                   id(C::ZoomIn), id(C::ZoomOut), id(C::FitScene), id(C::LookFromFrame), -1, id(C::PassImage),
-                                   id(C::PassDepth), id(C::PassDesign), id(C::PassPoints), id(C::CycleHidden), id(C::GrayscaleImage),
-                                   id(C::StakePoints), id(C::Labels), id(C::RawPicture), -1});
+  fill(tr("&Edit"), {id(C::Undo), id(C::Redo), -1, id(C::Delete), id(C::CopyCoordinates),
+                     id(C::ClearSelection), -1, id(C::CommandPalette)});
+  QMenu* view = fill(tr("&View"), {id(C::ShowOverlay),
+                                   id(C::ShowScene),
+                                   id(C::ShowBoth),
+                                   id(C::CycleView),
+                                   -1,
+                                   id(C::Fit),
+                                   id(C::ActualSize),
+                                   id(C::ZoomIn),
+                                   id(C::ZoomOut),
+                                   id(C::FitScene),
+                                   id(C::LookFromFrame),
+                                   -1,
+                                   id(C::PassImage),
+                                   id(C::PassDepth),
+                                   id(C::PassDesign),
+                                   id(C::PassPoints),
+                                   id(C::CycleHidden),
+                                   id(C::GrayscaleImage),
+                                   id(C::StakePoints),
+                                   id(C::Labels),
+                                   id(C::RawPicture),
+                                   -1});
   QMenu* panels = view->addMenu(tr("Panels"));
   for (QDockWidget* dock : m_docks)
     if (dock != m_messageDock) panels->addAction(dock->toggleViewAction());
@@ -68,10 +90,11 @@ void MainWindow::buildMenus() {
   panels->addAction(a[C::ResetLayout]);
   QMenu* theme = view->addMenu(icon(QStringLiteral("theme")), tr("Theme"));
   for (const Command c : {C::ThemeDark, C::ThemeLight, C::ThemeContrast}) theme->addAction(a[c]);
-  fill(tr("F&rame"), {id(C::Play), id(C::PreviousFrame), id(C::NextFrame), id(C::PreviousTen), id(C::NextTen), id(C::FirstFrame), id(C::LastFrame)});
+  fill(tr("F&rame"), {id(C::Play), id(C::PreviousFrame), id(C::NextFrame), id(C::PreviousTen), id(C::NextTen),
+                      id(C::FirstFrame), id(C::LastFrame)});
   fill(tr("A&lign"), {id(C::Resection), id(C::RefinePose), id(C::AcceptPose), id(C::DropPose)});
-  fill(tr("&Inspect"), {id(C::ToolSelect), id(C::ToolPick), id(C::ToolMeasure), id(C::ClearMeasurements), -1, id(C::HideSelected),
-                        id(C::IsolateStorey), id(C::ShowAllElements)});
+  fill(tr("&Inspect"), {id(C::ToolSelect), id(C::ToolPick), id(C::ToolMeasure), id(C::ClearMeasurements), -1,
+                        id(C::HideSelected), id(C::IsolateStorey), id(C::ShowAllElements)});
   fill(tr("A&nnotate"), {id(C::ToolText), id(C::ToolArrow), id(C::ToolCallout), -1, id(C::Delete)});
   fill(tr("&Help"), {id(C::Keys), id(C::CommandPalette), -1, id(C::About)});
   for (QMenu* menu : findChildren<QMenu*>()) menu->setToolTipsVisible(true);
@@ -79,18 +102,23 @@ void MainWindow::buildMenus() {
 
 void MainWindow::connectFileActions() {
   const Actions& a = *m_actions;
-  connect(a[C::NewProject], &QAction::triggered, this, [this] { if (mayClose()) m_files->newEmpty(); });
+  connect(a[C::NewProject], &QAction::triggered, this, [this] {
+    if (mayClose()) m_files->newEmpty();
+  });
   connect(a[C::OpenProject], &QAction::triggered, this, [this] {
     if (!mayClose()) return;
-    const QStringList paths = QFileDialog::getOpenFileNames(this, tr("Open"), QSettings().value(QStringLiteral("openFolder")).toString(),
-                                                            tr("Projects (*.alidade);;All files (*)"));
+    const QStringList paths = QFileDialog::getOpenFileNames(
+        this, tr("Open"), QSettings().value(QStringLiteral("openFolder")).toString(),
+        tr("Projects (*.alidade);;All files (*)"));
     if (paths.isEmpty()) return;
     QSettings().setValue(QStringLiteral("openFolder"), QFileInfo(paths.front()).absolutePath());
     m_files->openAny(paths);
   });
   connect(a[C::AddFiles], &QAction::triggered, this, &MainWindow::chooseFiles);
   connect(m_files, &ProjectFiles::wantsFiles, this, &MainWindow::chooseFiles);
-  connect(a[C::OpenSample], &QAction::triggered, this, [this] { if (mayClose()) m_files->openSample(); });
+  connect(a[C::OpenSample], &QAction::triggered, this, [this] {
+    if (mayClose()) m_files->openSample();
+  });
   connect(a[C::Save], &QAction::triggered, m_files, &ProjectFiles::save);
   connect(a[C::SaveAs], &QAction::triggered, this, &MainWindow::chooseSavePath);
   connect(m_files, &ProjectFiles::needsPath, this, &MainWindow::chooseSavePath);
@@ -110,14 +138,17 @@ void MainWindow::refillRecentMenu() {
   for (const QString& path : m_files->recent()) {
     QAction* action = m_recentMenu->addAction(QFileInfo(path).completeBaseName());
     action->setToolTip(path);
-    connect(action, &QAction::triggered, this, [this, path] { if (mayClose()) m_files->open(path); });
+    connect(action, &QAction::triggered, this, [this, path] {
+      if (mayClose()) m_files->open(path);
+    });
   }
   m_recentMenu->setEnabled(!m_recentMenu->isEmpty());
 }
 
 void MainWindow::chooseFiles() {
-  const QStringList paths = QFileDialog::getOpenFileNames(this, tr("Add scans, pictures, cameras, designs or points"),
-                                                          QSettings().value(QStringLiteral("openFolder")).toString());
+  const QStringList paths =
+      QFileDialog::getOpenFileNames(this, tr("Add scans, pictures, cameras, designs or points"),
+                                    QSettings().value(QStringLiteral("openFolder")).toString());
   if (paths.isEmpty()) return;
   QSettings().setValue(QStringLiteral("openFolder"), QFileInfo(paths.front()).absolutePath());
   m_files->add(paths);
@@ -125,8 +156,10 @@ void MainWindow::chooseFiles() {
 
 void MainWindow::chooseSavePath() {
   const QString start = QFileInfo(QSettings().value(QStringLiteral("openFolder")).toString(),
-                                  text(m_session->project()->name) + QStringLiteral(".alidade")).filePath();
-  const QString path = QFileDialog::getSaveFileName(this, tr("Save project"), start, tr("Projects (*.alidade)"));
+                                  text(m_session->project()->name) + QStringLiteral(".alidade"))
+                            .filePath();
+  const QString path =
+      QFileDialog::getSaveFileName(this, tr("Save project"), start, tr("Projects (*.alidade)"));
   if (!path.isEmpty()) m_files->saveAs(path);
 }
 
@@ -165,14 +198,19 @@ void MainWindow::connectEditActions() {
       return;
     }
     // Plain figures, as other programs read them.
-    QApplication::clipboard()->setText(QStringLiteral("%1 %2 %3").arg(world->x, 0, 'f', 3).arg(world->y, 0, 'f', 3).arg(world->z, 0, 'f', 3));
+    QApplication::clipboard()->setText(QStringLiteral("%1 %2 %3")
+                                           .arg(world->x, 0, 'f', 3)
+                                           .arg(world->y, 0, 'f', 3)
+                                           .arg(world->z, 0, 'f', 3));
     m_overlay->flash(tr("Copied %1").arg(formatWorld(*world)));
   });
   connect(a[C::CommandPalette], &QAction::triggered, m_palette, &CommandPalette::open);
   connect(a[C::ClearSelection], &QAction::triggered, this, [this] {
     if (m_overlay->escape()) return;
-    if (!(*m_actions)[C::ToolSelect]->isChecked()) (*m_actions)[C::ToolSelect]->trigger();
-    else m_session->select({});
+    if (!(*m_actions)[C::ToolSelect]->isChecked())
+      (*m_actions)[C::ToolSelect]->trigger();
+    else
+      m_session->select({});
   });
   connect(a[C::HideSelected], &QAction::triggered, this, &MainWindow::hideSelected);
   connect(a[C::IsolateStorey], &QAction::triggered, this, &MainWindow::isolateStorey);
@@ -215,16 +253,21 @@ void MainWindow::isolateStorey() {
 void MainWindow::connectViewActions() {
   const Actions& a = *m_actions;
   for (const Command c : {C::ShowOverlay, C::ShowScene, C::ShowBoth})
-    connect(a[c], &QAction::toggled, this, [this, c](bool on) { if (on) showMode(c); });
+    connect(a[c], &QAction::toggled, this, [this, c](bool on) {
+      if (on) showMode(c);
+    });
   connect(a[C::CycleView], &QAction::triggered, this, [this] {
-    const Command next = mode() == C::ShowOverlay ? C::ShowScene : mode() == C::ShowScene ? C::ShowBoth : C::ShowOverlay;
+    const Command next = mode() == C::ShowOverlay ? C::ShowScene
+                         : mode() == C::ShowScene ? C::ShowBoth
+                                                  : C::ShowOverlay;
     (*m_actions)[next]->setChecked(true);
   });
   // Tab moves the focus inside panels; only over the views it goes to the next view.
   a[C::CycleView]->setShortcutContext(Qt::WidgetWithChildrenShortcut);
   removeAction(a[C::CycleView]);
   m_splitter->addAction(a[C::CycleView]);
-  connect(a[C::Fit], &QAction::triggered, this, [this] { mode() == C::ShowScene ? m_scene->fitAll() : m_overlay->fit(); });
+  connect(a[C::Fit], &QAction::triggered, this,
+          [this] { mode() == C::ShowScene ? m_scene->fitAll() : m_overlay->fit(); });
   connect(a[C::ActualSize], &QAction::triggered, m_overlay, &OverlayView::actualSize);
   connect(a[C::ZoomIn], &QAction::triggered, this, [this] { m_overlay->zoomBy(1.25); });
   connect(a[C::ZoomOut], &QAction::triggered, this, [this] { m_overlay->zoomBy(0.8); });
@@ -232,14 +275,18 @@ void MainWindow::connectViewActions() {
   connect(a[C::LookFromFrame], &QAction::triggered, m_scene, &SceneWidget::lookFromFrame);
   connect(a[C::CycleHidden], &QAction::triggered, this, [this] {
     editDisplay([](DisplaySettings& d) {
-      d.hidden = d.hidden == HiddenStyle::Ghost ? HiddenStyle::Dash
-                 : d.hidden == HiddenStyle::Dash ? HiddenStyle::Hide : HiddenStyle::Ghost;
+      d.hidden = d.hidden == HiddenStyle::Ghost  ? HiddenStyle::Dash
+                 : d.hidden == HiddenStyle::Dash ? HiddenStyle::Hide
+                                                 : HiddenStyle::Ghost;
     });
   });
   const std::pair<Command, bool DisplaySettings::*> switches[] = {
-      {C::PassImage, &DisplaySettings::imagePass}, {C::PassDepth, &DisplaySettings::depthPass},
-      {C::PassDesign, &DisplaySettings::designPass}, {C::PassPoints, &DisplaySettings::pointPass},
-      {C::GrayscaleImage, &DisplaySettings::grayscaleImage}, {C::StakePoints, &DisplaySettings::stakePoints},
+      {C::PassImage, &DisplaySettings::imagePass},
+      {C::PassDepth, &DisplaySettings::depthPass},
+      {C::PassDesign, &DisplaySettings::designPass},
+      {C::PassPoints, &DisplaySettings::pointPass},
+      {C::GrayscaleImage, &DisplaySettings::grayscaleImage},
+      {C::StakePoints, &DisplaySettings::stakePoints},
       {C::Labels, &DisplaySettings::labels}};
   for (const auto& [command, member] : switches)
     connect(a[command], &QAction::triggered, this,
@@ -249,7 +296,8 @@ void MainWindow::connectViewActions() {
   connect(m_messageDock, &QDockWidget::visibilityChanged, this, [this] {
     (*m_actions)[C::ShowMessages]->setChecked(m_messageDock->toggleViewAction()->isChecked());
   });
-  const std::pair<Command, Theme> themes[] = {{C::ThemeDark, Theme::Dark}, {C::ThemeLight, Theme::Light}, {C::ThemeContrast, Theme::HighContrast}};
+  const std::pair<Command, Theme> themes[] = {
+      {C::ThemeDark, Theme::Dark}, {C::ThemeLight, Theme::Light}, {C::ThemeContrast, Theme::HighContrast}};
   for (const auto& [command, theme] : themes) {
     a[command]->setChecked(currentTheme() == theme);
     connect(a[command], &QAction::triggered, this, [this, theme = theme] { chooseTheme(theme); });
@@ -278,7 +326,8 @@ void MainWindow::chooseTheme(Theme theme) {
 
 void MainWindow::connectFrameActions() {
   const Actions& a = *m_actions;
-  const std::pair<Command, int> steps[] = {{C::PreviousFrame, -1}, {C::NextFrame, 1}, {C::PreviousTen, -10}, {C::NextTen, 10}};
+  const std::pair<Command, int> steps[] = {
+      {C::PreviousFrame, -1}, {C::NextFrame, 1}, {C::PreviousTen, -10}, {C::NextTen, 10}};
   for (const auto& [command, by] : steps)
     connect(a[command], &QAction::triggered, this, [this, by = by] { m_session->stepFrames(by); });
   connect(a[C::FirstFrame], &QAction::triggered, this, [this] { m_session->setFrameIndex(0); });
@@ -302,7 +351,8 @@ void MainWindow::connectFrameActions() {
 }
 
 void MainWindow::connectToolActions() {
-  for (const Command c : {C::ToolSelect, C::ToolPick, C::ToolMeasure, C::ToolArrow, C::ToolText, C::ToolCallout})
+  for (const Command c :
+       {C::ToolSelect, C::ToolPick, C::ToolMeasure, C::ToolArrow, C::ToolText, C::ToolCallout})
     connect((*m_actions)[c], &QAction::triggered, this, &MainWindow::useTool);
   connect((*m_actions)[C::ClearMeasurements], &QAction::triggered, this, [this] {
     m_measurements->clear();
@@ -314,8 +364,10 @@ void MainWindow::connectToolActions() {
   });
   connect(m_overlay, &OverlayView::contextMenuWanted, this,
           [this](const QPoint& at, const glm::dvec2& raw) { showContextMenu(at, &raw); });
-  connect(m_scene, &SceneWidget::contextMenuWanted, this, [this](const QPoint& at) { showContextMenu(at, nullptr); });
-  connect(m_projectPanel, &ProjectPanel::contextMenuWanted, this, [this](const QPoint& at) { showContextMenu(at, nullptr); });
+  connect(m_scene, &SceneWidget::contextMenuWanted, this,
+          [this](const QPoint& at) { showContextMenu(at, nullptr); });
+  connect(m_projectPanel, &ProjectPanel::contextMenuWanted, this,
+          [this](const QPoint& at) { showContextMenu(at, nullptr); });
 }
 
 void MainWindow::useTool() {
@@ -332,11 +384,14 @@ void MainWindow::useTool() {
 
 void MainWindow::connectHoldKeys() {
   m_hold->onHold(Qt::Key_B, [this](bool held) {
-    if (held && !m_session->canShowBefore()) m_overlay->flash(tr("This frame's pose was not refined: there is no before"));
+    if (held && !m_session->canShowBefore())
+      m_overlay->flash(tr("This frame's pose was not refined: there is no before"));
     m_session->setShowBefore(held);
   });
   m_hold->onHold(Qt::Key_V, [this](bool held) { m_session->setResidualsShown(!held); });
-  m_hold->onHold(Qt::Key_R, [this](bool held) { m_session->setRawOnly(held || (*m_actions)[C::RawPicture]->isChecked()); });
+  m_hold->onHold(Qt::Key_R, [this](bool held) {
+    m_session->setRawOnly(held || (*m_actions)[C::RawPicture]->isChecked());
+  });
   m_hold->onHold(Qt::Key_Space, [this](bool held) {
     m_overlay->setPanHeld(held);
     if (!held && !m_overlay->panned() && m_workspaceShown) m_playback->toggle();
@@ -369,7 +424,8 @@ void MainWindow::connectSession() {
   // A note with a next step is worth showing at once; it takes no focus.
   connect(&m_session->messages(), &MessageList::added, this, [this](const Message& message) {
     if (message.severity == Severity::Info) return;
-    if (m_workspaceShown || message.severity == Severity::Error) (*m_actions)[C::ShowMessages]->setChecked(true);
+    if (m_workspaceShown || message.severity == Severity::Error)
+      (*m_actions)[C::ShowMessages]->setChecked(true);
   });
 }
 
@@ -392,9 +448,15 @@ void MainWindow::refreshDisplayActions() {
   m_density->setValue(d.density);
   m_pointSize->setValue(d.pointSize);
   switch (d.hidden) {
-    case HiddenStyle::Hide: a[C::CycleHidden]->setText(tr("Hidden: not drawn")); break;
-    case HiddenStyle::Ghost: a[C::CycleHidden]->setText(tr("Hidden: ghost")); break;
-    case HiddenStyle::Dash: a[C::CycleHidden]->setText(tr("Hidden: dashed")); break;
+    case HiddenStyle::Hide:
+      a[C::CycleHidden]->setText(tr("Hidden: not drawn"));
+      break;
+    case HiddenStyle::Ghost:
+      a[C::CycleHidden]->setText(tr("Hidden: ghost"));
+      break;
+    case HiddenStyle::Dash:
+      a[C::CycleHidden]->setText(tr("Hidden: dashed"));
+      break;
   }
 }
 
@@ -403,9 +465,11 @@ void MainWindow::refreshEnabled() {
   const bool project = m_session->hasProject();
   const bool frames = project && m_session->currentFrame();
   const bool element = m_session->selection().element >= 0;
-  for (const Command c : {C::Save, C::SaveAs, C::CloseProject, C::AddFiles, C::ShowAllElements}) a[c]->setEnabled(project);
-  for (const Command c : {C::ExportPicture, C::Play, C::PreviousFrame, C::NextFrame, C::PreviousTen, C::NextTen, C::FirstFrame,
-                          C::LastFrame, C::Resection, C::LookFromFrame, C::RawPicture})
+  for (const Command c : {C::Save, C::SaveAs, C::CloseProject, C::AddFiles, C::ShowAllElements})
+    a[c]->setEnabled(project);
+  for (const Command c :
+       {C::ExportPicture, C::Play, C::PreviousFrame, C::NextFrame, C::PreviousTen, C::NextTen, C::FirstFrame,
+        C::LastFrame, C::Resection, C::LookFromFrame, C::RawPicture})
     a[c]->setEnabled(frames);
   a[C::Undo]->setEnabled(m_session->undo().canUndo());
   a[C::Redo]->setEnabled(m_session->undo().canRedo());
@@ -425,7 +489,8 @@ void MainWindow::showContextMenu(const QPoint& globalPosition, const glm::dvec2*
     const PictureProbe& probe = m_overlay->probe();
     selection.annotation = probe.annotationAt(*raw);
     if (!selection.annotation) selection.stakePoint = probe.stakePointAt(*raw, 10.0 / m_overlay->zoom());
-    if (const auto element = probe.elementAt(*raw); element && !selection.annotation && selection.stakePoint.empty())
+    if (const auto element = probe.elementAt(*raw);
+        element && !selection.annotation && selection.stakePoint.empty())
       selection.design = element->design, selection.element = element->element;
     m_session->select(selection);
   }

@@ -22,10 +22,10 @@ struct Message {
   QString where;
   QString advice;
   QDateTime time;
-  QString actionText;            ///< of the button; empty: none
+  QString actionText;  ///< of the button; empty: none
   std::function<void()> action;
 
-  QString fullText() const;      ///< all of it, for the clipboard
+  QString fullText() const;  ///< all of it, for the clipboard
 };
 
 /// The session's messages, newest last. Shared by the message panel and the status bar.

@@ -30,10 +30,18 @@ QLabel* signOf(Severity severity) {
   const ThemeColours& c = colours();
   QColor colour = c.dimText;
   switch (severity) {
-    case Severity::Info: sign->setText(QStringLiteral("·")); break;
-    case Severity::Note: sign->setText(QStringLiteral("→")), colour = c.accent; break;
-    case Severity::Warning: sign->setText(QStringLiteral("▲")), colour = c.caution; break;
-    case Severity::Error: sign->setText(QStringLiteral("✕")), colour = c.bad; break;
+    case Severity::Info:
+      sign->setText(QStringLiteral("·"));
+      break;
+    case Severity::Note:
+      sign->setText(QStringLiteral("→")), colour = c.accent;
+      break;
+    case Severity::Warning:
+      sign->setText(QStringLiteral("▲")), colour = c.caution;
+      break;
+    case Severity::Error:
+      sign->setText(QStringLiteral("✕")), colour = c.bad;
+      break;
   }
   sign->setStyleSheet(QStringLiteral("color: %1; font-weight: 600;").arg(colour.name()));
   return sign;
@@ -68,7 +76,8 @@ MessagePanel::MessagePanel(MessageList& messages, QWidget* parent) : QWidget(par
   layout->addLayout(side);
   connect(copy, &QToolButton::clicked, this, [this] {
     QStringList lines;
-    for (const Message& m : m_messages.messages()) lines << m.time.toString(Qt::ISODate) + QStringLiteral("  ") + m.fullText();
+    for (const Message& m : m_messages.messages())
+      lines << m.time.toString(Qt::ISODate) + QStringLiteral("  ") + m.fullText();
     QApplication::clipboard()->setText(lines.join('\n'));
   });
   connect(clear, &QToolButton::clicked, &m_messages, &MessageList::clear);
@@ -105,7 +114,8 @@ void MessagePanel::append(const Message& message) {
     delete oldest->widget();
     delete oldest;
   }
-  QTimer::singleShot(0, this, [this] { m_area->verticalScrollBar()->setValue(m_area->verticalScrollBar()->maximum()); });
+  QTimer::singleShot(
+      0, this, [this] { m_area->verticalScrollBar()->setValue(m_area->verticalScrollBar()->maximum()); });
 }
 
 void MessagePanel::clearRows() {

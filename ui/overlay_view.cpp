@@ -27,8 +27,8 @@ constexpr int kMargin = 12;
 
 QImage imageOver(const ColourImage& image) {
   if (image.empty()) return {};
-  return QImage(reinterpret_cast<const uchar*>(image.data()), image.width(), image.height(), image.width() * 4,
-                QImage::Format_RGBX8888);
+  return QImage(reinterpret_cast<const uchar*>(image.data()), image.width(), image.height(),
+                image.width() * 4, QImage::Format_RGBX8888);
 }
 
 }  // namespace
@@ -90,7 +90,8 @@ void OverlayView::fit() {
   m_fitted = true;
   m_zoom = fitZoom();
   const QSize raw = rawSize();
-  m_offset = QPointF(std::round((width() - raw.width() * m_zoom) / 2), std::round((height() - raw.height() * m_zoom) / 2));
+  m_offset = QPointF(std::round((width() - raw.width() * m_zoom) / 2),
+                     std::round((height() - raw.height() * m_zoom) / 2));
   m_sizeTimer.start();
   emit zoomChanged(m_zoom);
   update();
@@ -212,7 +213,8 @@ void OverlayView::mouseMoveEvent(QMouseEvent* event) {
     m_tool->move(*this, *event);
   }
   const QRectF picture = pictureRect();
-  m_cursorRaw = picture.contains(event->position()) ? std::optional(rawFromView(event->position())) : std::nullopt;
+  m_cursorRaw =
+      picture.contains(event->position()) ? std::optional(rawFromView(event->position())) : std::nullopt;
   updateCursorReadout();
   update();
 }
@@ -300,7 +302,8 @@ void OverlayView::paintEvent(QPaintEvent*) {
 
 void OverlayView::paintBanners(QPainter& painter) {
   const QRectF area = QRectF(rect()).adjusted(kMargin, kMargin, -kMargin, -kMargin);
-  if (m_tool && !m_tool->hint().isEmpty()) drawPlate(painter, area, Qt::AlignTop | Qt::AlignLeft, m_tool->hint());
+  if (m_tool && !m_tool->hint().isEmpty())
+    drawPlate(painter, area, Qt::AlignTop | Qt::AlignLeft, m_tool->hint());
   if (m_result && m_result->problem)
     drawPlate(painter, area, Qt::AlignTop | Qt::AlignHCenter, errorText(*m_result->problem));
   const RenderRequest* request = m_result ? &m_result->request : nullptr;
@@ -309,7 +312,8 @@ void OverlayView::paintBanners(QPainter& painter) {
   else if (request && request->before)
     drawPlate(painter, area, Qt::AlignTop | Qt::AlignRight, tr("Pose before the refinement"));
   else if (request && request->pose)
-    drawPlate(painter, area, Qt::AlignTop | Qt::AlignRight, tr("Refined pose, not yet accepted. Hold B to compare"));
+    drawPlate(painter, area, Qt::AlignTop | Qt::AlignRight,
+              tr("Refined pose, not yet accepted. Hold B to compare"));
   if (!m_flash.isEmpty()) drawPlate(painter, area, Qt::AlignBottom | Qt::AlignHCenter, m_flash);
 }
 

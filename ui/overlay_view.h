@@ -105,7 +105,8 @@ class OverlayView : public QWidget {
 
 /// Dark text casing and light fill (or the other way round), readable over soil and sky.
 void drawCasedText(QPainter& painter, const QPointF& baseline, const QString& text, const QColor& fill);
-void drawCasedLine(QPainter& painter, const QPointF& a, const QPointF& b, const QColor& fill, double width = 1.6);
+void drawCasedLine(QPainter& painter, const QPointF& a, const QPointF& b, const QColor& fill,
+                   double width = 1.6);
 /// A line of text on a dark plate, inside `area`; returns the plate's rectangle.
 QRectF drawPlate(QPainter& painter, const QRectF& area, Qt::Alignment alignment, const QString& text);
 

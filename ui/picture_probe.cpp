@@ -94,7 +94,8 @@ double PictureProbe::scanDepth(const glm::dvec2& raw) const {
   const DepthImage& depth = m_result->frame.picture.scanDepth;
   const glm::dvec2 px = resultFromRaw(raw);
   const int x = static_cast<int>(std::lround(px.x)), y = static_cast<int>(std::lround(px.y));
-  if (!depth.contains(x, y) || !std::isfinite(depth.at(x, y))) return std::numeric_limits<double>::quiet_NaN();
+  if (!depth.contains(x, y) || !std::isfinite(depth.at(x, y)))
+    return std::numeric_limits<double>::quiet_NaN();
   return depth.at(x, y);
 }
 

@@ -77,7 +77,8 @@ void ProjectFiles::openAny(const QStringList& paths) {
   for (const QString& path : paths) {
     if (QFileInfo(path).suffix().compare(QStringLiteral("alidade"), Qt::CaseInsensitive) != 0) continue;
     open(path);
-    if (paths.size() > 1) m_session.messages().info(tr("Opened the project; the other files were left aside"));
+    if (paths.size() > 1)
+      m_session.messages().info(tr("Opened the project; the other files were left aside"));
     return;
   }
   if (!paths.isEmpty()) add(paths);
@@ -131,7 +132,8 @@ void ProjectFiles::noteOutcome(const std::vector<std::string>& notes) {
 }
 
 void ProjectFiles::load(std::shared_ptr<const Project> project, bool onlyNew) {
-  auto wanted = std::make_shared<const Project>(onlyNew ? withoutLoaded(*project, *m_session.data()) : *project);
+  auto wanted =
+      std::make_shared<const Project>(onlyNew ? withoutLoaded(*project, *m_session.data()) : *project);
   if (wanted->scans.empty() && wanted->designs.empty()) return;
   m_session.jobs().run(
       tr("Loading scans and designs"),

@@ -36,8 +36,8 @@ class ProjectFiles : public QObject {
  signals:
   void opened(const QString& path);
   void recentChanged();
-  void needsPath();  ///< save() without a path yet
-  void wantsFiles(); ///< the next step that a note offers: choose more files
+  void needsPath();   ///< save() without a path yet
+  void wantsFiles();  ///< the next step that a note offers: choose more files
 
  private:
   void remember(const QString& path);

@@ -106,9 +106,10 @@ void ProjectPanel::restoreExpanded() {
       const QModelIndex source = m_filter->mapToSource(child);
       const auto kind = m_model.kind(source);
       // Groups open at first, down to the storeys; frames and elements are many and stay folded.
-      const bool atFirst = m_first && (kind == ProjectTreeModel::Kind::Scans || kind == ProjectTreeModel::Kind::Cameras ||
-                                       kind == ProjectTreeModel::Kind::Designs || kind == ProjectTreeModel::Kind::Design ||
-                                       kind == ProjectTreeModel::Kind::Annotations);
+      const bool atFirst =
+          m_first && (kind == ProjectTreeModel::Kind::Scans || kind == ProjectTreeModel::Kind::Cameras ||
+                      kind == ProjectTreeModel::Kind::Designs || kind == ProjectTreeModel::Kind::Design ||
+                      kind == ProjectTreeModel::Kind::Annotations);
       if (atFirst || m_expanded.contains(m_model.key(source))) {
         m_tree->expand(child);
         visit(child);
@@ -124,7 +125,8 @@ bool ProjectPanel::eventFilter(QObject* watched, QEvent* event) {
   if (watched == m_tree && event->type() == QEvent::ShortcutOverride) {
     // Here these keys fold rows and toggle check boxes.
     const int key = static_cast<QKeyEvent*>(event)->key();
-    if (key == Qt::Key_Left || key == Qt::Key_Right || key == Qt::Key_Home || key == Qt::Key_End) event->accept();
+    if (key == Qt::Key_Left || key == Qt::Key_Right || key == Qt::Key_Home || key == Qt::Key_End)
+      event->accept();
   }
   return QWidget::eventFilter(watched, event);
 }

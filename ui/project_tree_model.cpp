@@ -15,8 +15,8 @@ namespace alidade {
 struct ProjectTreeModel::Node {
   Kind kind = Kind::Root;
   QString name;
-  QString detail;          ///< beside the name, dim
-  std::int64_t id = 0;     ///< of the scan, camera, frame, design, annotation, finding
+  QString detail;       ///< beside the name, dim
+  std::int64_t id = 0;  ///< of the scan, camera, frame, design, annotation, finding
   int element = -1;
   std::string stakePoint;
   Node* parent = nullptr;
@@ -42,23 +42,34 @@ using Kind = ProjectTreeModel::Kind;
 QString iconNameOf(Kind kind) {
   switch (kind) {
     case Kind::Scans:
-    case Kind::Scan: return QStringLiteral("scan");
+    case Kind::Scan:
+      return QStringLiteral("scan");
     case Kind::Cameras:
-    case Kind::Camera: return QStringLiteral("camera");
-    case Kind::Frame: return QStringLiteral("frame");
+    case Kind::Camera:
+      return QStringLiteral("camera");
+    case Kind::Frame:
+      return QStringLiteral("frame");
     case Kind::Designs:
-    case Kind::Design: return QStringLiteral("design");
-    case Kind::Storey: return QStringLiteral("storey");
-    case Kind::Element: return QStringLiteral("element");
+    case Kind::Design:
+      return QStringLiteral("design");
+    case Kind::Storey:
+      return QStringLiteral("storey");
+    case Kind::Element:
+      return QStringLiteral("element");
     case Kind::StakePoints:
-    case Kind::StakePoint: return QStringLiteral("stake");
+    case Kind::StakePoint:
+      return QStringLiteral("stake");
     case Kind::ControlPoints:
-    case Kind::ControlPoint: return QStringLiteral("control");
+    case Kind::ControlPoint:
+      return QStringLiteral("control");
     case Kind::Annotations:
-    case Kind::Annotation: return QStringLiteral("annotation");
+    case Kind::Annotation:
+      return QStringLiteral("annotation");
     case Kind::Findings:
-    case Kind::Finding: return QStringLiteral("finding");
-    case Kind::Root: break;
+    case Kind::Finding:
+      return QStringLiteral("finding");
+    case Kind::Root:
+      break;
   }
   return {};
 }
@@ -113,7 +124,8 @@ void ProjectTreeModel::buildCameras(Node& root) {
   }
   for (const Frame& frame : project.frames) {
     const auto it = byId.find(frame.camera.value);
-    if (it == byId.end()) byId[frame.camera.value] = &cameras.add(Kind::Camera, tr("No camera"), frame.camera.value);
+    if (it == byId.end())
+      byId[frame.camera.value] = &cameras.add(Kind::Camera, tr("No camera"), frame.camera.value);
     Node& row = byId[frame.camera.value]->add(Kind::Frame, text(frame.name), frame.id.value);
     if (frame.poseSource == PoseSource::None) row.detail = tr("no pose");
     if (frame.poseSource == PoseSource::Refined) row.detail = tr("refined");
@@ -132,9 +144,10 @@ void ProjectTreeModel::buildDesigns(Node& root) {
       const DesignElement& element = model->elements[i];
       Node*& storey = storeys[element.storey];
       if (!storey)
-        storey = &row.add(Kind::Storey, element.storey.empty() ? tr("No storey") : text(element.storey), design.id.value);
-      Node& leaf = storey->add(Kind::Element, element.name.empty() ? text(element.globalId) : text(element.name),
-                               design.id.value);
+        storey = &row.add(Kind::Storey, element.storey.empty() ? tr("No storey") : text(element.storey),
+                          design.id.value);
+      Node& leaf = storey->add(
+          Kind::Element, element.name.empty() ? text(element.globalId) : text(element.name), design.id.value);
       leaf.element = static_cast<int>(i);
       leaf.detail = text(element.type);
     }
@@ -151,13 +164,15 @@ void ProjectTreeModel::buildPoints(Node& root) {
   }
   if (!project.controlPoints.empty()) {
     Node& controls = root.add(Kind::ControlPoints, tr("Control points"));
-    for (const ControlPoint& point : project.controlPoints) controls.add(Kind::ControlPoint, text(point.name));
+    for (const ControlPoint& point : project.controlPoints)
+      controls.add(Kind::ControlPoint, text(point.name));
   }
   Node& annotations = root.add(Kind::Annotations, tr("Annotations"));
   for (const Annotation& annotation : project.annotations)
     annotations.add(Kind::Annotation, annotationName(annotation), annotation.id.value);
   Node& findings = root.add(Kind::Findings, tr("Findings"));
-  for (const Finding& finding : project.findings) findings.add(Kind::Finding, text(finding.name), finding.id.value);
+  for (const Finding& finding : project.findings)
+    findings.add(Kind::Finding, text(finding.name), finding.id.value);
 }
 
 void ProjectTreeModel::refreshChecks() {
@@ -230,8 +245,10 @@ QString ProjectTreeModel::rowText(const Node& row) const {
     case Kind::StakePoints:
     case Kind::ControlPoints:
     case Kind::Annotations:
-    case Kind::Findings: return QStringLiteral("%1 (%2)").arg(row.name).arg(row.children.size());
-    default: return row.name;
+    case Kind::Findings:
+      return QStringLiteral("%1 (%2)").arg(row.name).arg(row.children.size());
+    default:
+      return row.name;
   }
 }
 
@@ -239,16 +256,20 @@ QVariant ProjectTreeModel::data(const QModelIndex& index, int role) const {
   if (!index.isValid()) return {};
   const Node& row = *node(index);
   switch (role) {
-    case Qt::DisplayRole: return row.detail.isEmpty() ? rowText(row) : rowText(row) + QStringLiteral("   ") + row.detail;
-    case Qt::ToolTipRole: return row.detail.isEmpty() ? row.name : QStringLiteral("%1, %2").arg(row.name, row.detail);
-    case Qt::DecorationRole: return icon(iconNameOf(row.kind), true);
+    case Qt::DisplayRole:
+      return row.detail.isEmpty() ? rowText(row) : rowText(row) + QStringLiteral("   ") + row.detail;
+    case Qt::ToolTipRole:
+      return row.detail.isEmpty() ? row.name : QStringLiteral("%1, %2").arg(row.name, row.detail);
+    case Qt::DecorationRole:
+      return icon(iconNameOf(row.kind), true);
     case Qt::CheckStateRole:
       if (checkable(row.kind)) return checkState(row);
       return {};
     case Qt::ForegroundRole:
       if (checkable(row.kind) && checkState(row) == Qt::Unchecked) return colours().dimText;
       return {};
-    default: return {};
+    default:
+      return {};
   }
 }
 
@@ -259,8 +280,10 @@ bool ProjectTreeModel::checkable(Kind kind) const {
     case Kind::Storey:
     case Kind::Element:
     case Kind::StakePoints:
-    case Kind::Annotations: return true;
-    default: return false;
+    case Kind::Annotations:
+      return true;
+    default:
+      return false;
   }
 }
 
@@ -272,9 +295,12 @@ Qt::CheckState ProjectTreeModel::checkState(const Node& row) const {
       for (const Scan& scan : project.scans)
         if (scan.id.value == row.id) return of(scan.visible);
       return Qt::Unchecked;
-    case Kind::StakePoints: return of(m_session.display().stakePoints);
-    case Kind::Annotations: return of(m_session.display().annotations);
-    case Kind::Element: return of(m_session.elementVisible(DesignId{row.id}, row.element));
+    case Kind::StakePoints:
+      return of(m_session.display().stakePoints);
+    case Kind::Annotations:
+      return of(m_session.display().annotations);
+    case Kind::Element:
+      return of(m_session.elementVisible(DesignId{row.id}, row.element));
     case Kind::Storey: {
       std::size_t shown = 0;
       for (const auto& child : row.children) shown += checkState(*child) == Qt::Checked;
@@ -287,7 +313,8 @@ Qt::CheckState ProjectTreeModel::checkState(const Node& row) const {
         return design.hiddenElements.empty() ? Qt::Checked : Qt::PartiallyChecked;
       }
       return Qt::Unchecked;
-    default: return Qt::Checked;
+    default:
+      return Qt::Checked;
   }
 }
 
@@ -310,7 +337,9 @@ bool ProjectTreeModel::setData(const QModelIndex& index, const QVariant& value, 
           if (design.id.value == id) design.visible = on;
       });
       return true;
-    case Kind::Element: m_session.setElementsVisible(change, DesignId{id}, {row.element}, on); return true;
+    case Kind::Element:
+      m_session.setElementsVisible(change, DesignId{id}, {row.element}, on);
+      return true;
     case Kind::Storey: {
       std::vector<int> elements;
       for (const auto& child : row.children) elements.push_back(child->element);
@@ -324,7 +353,8 @@ bool ProjectTreeModel::setData(const QModelIndex& index, const QVariant& value, 
       m_session.setDisplay(display);
       return true;
     }
-    default: return false;
+    default:
+      return false;
   }
 }
 
@@ -361,7 +391,8 @@ FrameId ProjectTreeModel::frame(const QModelIndex& index) const {
 QModelIndex ProjectTreeModel::indexOf(const SelectionState& wanted) const {
   const std::function<const Node*(const Node&)> find = [&](const Node& parent) -> const Node* {
     for (const auto& child : parent.children) {
-      const bool leaf = child->kind == Kind::Element || child->kind == Kind::StakePoint || child->kind == Kind::Annotation;
+      const bool leaf =
+          child->kind == Kind::Element || child->kind == Kind::StakePoint || child->kind == Kind::Annotation;
       if (leaf && selection(indexOf(child.get())) == wanted) return child.get();
       if (const Node* below = find(*child)) return below;
     }

@@ -19,8 +19,24 @@ class ProjectTreeModel : public QAbstractItemModel {
 
  public:
   enum class Kind {
-    Root, Scans, Scan, Cameras, Camera, Frame, Designs, Design, Storey, Element, StakePoints, StakePoint,
-    ControlPoints, ControlPoint, Annotations, Annotation, Findings, Finding
+    Root,
+    Scans,
+    Scan,
+    Cameras,
+    Camera,
+    Frame,
+    Designs,
+    Design,
+    Storey,
+    Element,
+    StakePoints,
+    StakePoint,
+    ControlPoints,
+    ControlPoint,
+    Annotations,
+    Annotation,
+    Findings,
+    Finding
   };
 
   explicit ProjectTreeModel(Session& session, QObject* parent = nullptr);

@@ -25,7 +25,8 @@ QString stackedWorld(const glm::dvec3& world) {
 
 }  // namespace
 
-PropertiesPanel::PropertiesPanel(Session& session, QWidget* parent) : QScrollArea(parent), m_session(session) {
+PropertiesPanel::PropertiesPanel(Session& session, QWidget* parent)
+    : QScrollArea(parent), m_session(session) {
   setWidgetResizable(true);
   setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
   setObjectName(QStringLiteral("propertiesPanel"));
@@ -105,7 +106,8 @@ void PropertiesPanel::showElement(const DesignModel& model, int index) {
   QStringList under;
   if (!element.type.empty()) under << text(element.type);
   if (!element.storey.empty()) under << text(element.storey);
-  heading(element.name.empty() ? text(element.globalId) : text(element.name), under.join(QStringLiteral(", ")));
+  heading(element.name.empty() ? text(element.globalId) : text(element.name),
+          under.join(QStringLiteral(", ")));
   auto* shares = new ShareBar;
   m_layout->addSpacing(4);
   m_layout->addWidget(shares);
@@ -115,7 +117,10 @@ void PropertiesPanel::showElement(const DesignModel& model, int index) {
   const Bounds box = model.elementBounds(static_cast<std::size_t>(index));
   if (!box.empty()) {
     const glm::dvec3 size = box.size();
-    row(tr("Size"), QStringLiteral("%1 × %2 × %3 m").arg(size.x, 0, 'f', 3).arg(size.y, 0, 'f', 3).arg(size.z, 0, 'f', 3));
+    row(tr("Size"), QStringLiteral("%1 × %2 × %3 m")
+                        .arg(size.x, 0, 'f', 3)
+                        .arg(size.y, 0, 'f', 3)
+                        .arg(size.z, 0, 'f', 3));
     row(tr("Middle"), stackedWorld(box.centre()));
   }
   row(tr("Global id"), text(element.globalId));
@@ -133,7 +138,8 @@ void PropertiesPanel::showElement(const DesignModel& model, int index) {
 }
 
 void PropertiesPanel::showStakePoint(const StakePoint& point) {
-  heading(text(point.name), point.code.empty() ? tr("Stake-out point") : tr("Stake-out point, %1").arg(text(point.code)));
+  heading(text(point.name),
+          point.code.empty() ? tr("Stake-out point") : tr("Stake-out point, %1").arg(text(point.code)));
   startRows();
   row(tr("E"), formatCoordinate(point.position.x) + QStringLiteral(" m"));
   row(tr("N"), formatCoordinate(point.position.y) + QStringLiteral(" m"));
@@ -141,7 +147,8 @@ void PropertiesPanel::showStakePoint(const StakePoint& point) {
   row(tr("Tolerance"), formatMillimetres(point.toleranceM));
   const Frame* frame = m_session.currentFrame();
   if (frame && frame->cameraFromWorld)
-    row(tr("From the camera"), formatDistance(glm::length(point.position - frame->cameraFromWorld->centre())));
+    row(tr("From the camera"),
+        formatDistance(glm::length(point.position - frame->cameraFromWorld->centre())));
 }
 
 void PropertiesPanel::showAnnotation(const Annotation& annotation) {
@@ -149,8 +156,10 @@ void PropertiesPanel::showAnnotation(const Annotation& annotation) {
   heading(annotation.text.empty() ? tr("Arrow") : text(annotation.text), tr("Annotation"));
   startRows();
   row(tr("Tied to"), world ? tr("the world, seen in every frame") : tr("this picture"));
-  if (world) row(tr("At"), stackedWorld(annotation.world));
-  else row(tr("At"), formatPixel(annotation.pixel));
+  if (world)
+    row(tr("At"), stackedWorld(annotation.world));
+  else
+    row(tr("At"), formatPixel(annotation.pixel));
 }
 
 void PropertiesPanel::showFrame() {
@@ -164,7 +173,8 @@ void PropertiesPanel::showFrame() {
     const Intrinsics& in = camera->camera.intrinsics();
     const std::string_view model = cameraModelName(in.model);
     row(tr("Camera"), text(camera->name));
-    row(tr("Lens"), QStringLiteral("%1, f %2 px").arg(QString::fromUtf8(model.data(), static_cast<qsizetype>(model.size())))
+    row(tr("Lens"), QStringLiteral("%1, f %2 px")
+                        .arg(QString::fromUtf8(model.data(), static_cast<qsizetype>(model.size())))
                         .arg(in.fx, 0, 'f', 1));
     row(tr("Picture"), QStringLiteral("%1 × %2 px").arg(in.width).arg(in.height));
   }

@@ -29,9 +29,9 @@ struct RenderRequest {
   bool before = false;                 ///< `pose` is the one before the refinement
   bool rawOnly = false;                ///< the picture as the camera saw it
   bool residuals = true;
-  int width = 0, height = 0;           ///< of the result; 0: the raw picture's
-  quint64 serial = 0;                  ///< counts requests; a later one wins
-  bool draft = false;                  ///< a smaller picture while something is being dragged
+  int width = 0, height = 0;  ///< of the result; 0: the raw picture's
+  quint64 serial = 0;         ///< counts requests; a later one wins
+  bool draft = false;         ///< a smaller picture while something is being dragged
 };
 
 struct RenderResult {

@@ -13,8 +13,12 @@
 
 namespace alidade {
 
-ResectionPanel::ResectionPanel(Session& session, PoseRefinement& refinement, OverlayView& view, QWidget* parent)
-    : QWidget(parent), m_session(session), m_refinement(refinement), m_view(view),
+ResectionPanel::ResectionPanel(Session& session, PoseRefinement& refinement, OverlayView& view,
+                               QWidget* parent)
+    : QWidget(parent),
+      m_session(session),
+      m_refinement(refinement),
+      m_view(view),
       m_form(std::make_unique<Ui::ResectionPanelForm>()) {
   m_form->setupUi(this);
   QTableWidget* table = m_form->observationTable;
@@ -53,8 +57,10 @@ void ResectionPanel::refillPoints() {
   m_points.clear();
   m_form->point->clear();
   m_points.push_back({tr("Point of the scan"), std::nullopt});
-  for (const ControlPoint& point : m_session.project()->controlPoints) m_points.push_back({text(point.name), point.position});
-  for (const StakePoint& point : m_session.project()->stakePoints) m_points.push_back({text(point.name), point.position});
+  for (const ControlPoint& point : m_session.project()->controlPoints)
+    m_points.push_back({text(point.name), point.position});
+  for (const StakePoint& point : m_session.project()->stakePoints)
+    m_points.push_back({text(point.name), point.position});
   for (const KnownPoint& point : m_points) m_form->point->addItem(point.name);
   if (m_points.size() > 1) m_form->point->setCurrentIndex(1);
 }
@@ -63,7 +69,8 @@ void ResectionPanel::applyLocks() {
   ResectionOptions& options = m_refinement.options();
   options.lockPosition = {m_form->lockE->isChecked(), m_form->lockN->isChecked(), m_form->lockH->isChecked()};
   options.lockAttitude = m_form->lockAttitude->isChecked();
-  m_form->lockPosition->setChecked(options.lockPosition[0] && options.lockPosition[1] && options.lockPosition[2]);
+  m_form->lockPosition->setChecked(options.lockPosition[0] && options.lockPosition[1] &&
+                                   options.lockPosition[2]);
 }
 
 void ResectionPanel::startPick() {
@@ -133,11 +140,13 @@ void ResectionPanel::refresh() {
     const auto residual = m_refinement.residual(o);
     const QString cells[] = {
         text(o.name), QStringLiteral("%1, %2").arg(o.pixel.x, 0, 'f', 1).arg(o.pixel.y, 0, 'f', 1),
-        residual ? QStringLiteral("%1, %2").arg(residual->x, 0, 'f', 1).arg(residual->y, 0, 'f', 1) : tr("not seen"),
+        residual ? QStringLiteral("%1, %2").arg(residual->x, 0, 'f', 1).arg(residual->y, 0, 'f', 1)
+                 : tr("not seen"),
         residual ? QString::number(glm::length(*residual), 'f', 2) : QString()};
     for (int c = 0; c < 4; ++c) {
       auto* item = new QTableWidgetItem(cells[c]);
-      item->setFlags(Qt::ItemIsEnabled | Qt::ItemIsSelectable | (c == 0 ? Qt::ItemIsUserCheckable : Qt::NoItemFlags));
+      item->setFlags(Qt::ItemIsEnabled | Qt::ItemIsSelectable |
+                     (c == 0 ? Qt::ItemIsUserCheckable : Qt::NoItemFlags));
       if (c == 0) item->setCheckState(o.enabled ? Qt::Checked : Qt::Unchecked);
       if (c > 0) item->setTextAlignment(Qt::AlignRight | Qt::AlignVCenter);
       table->setItem(static_cast<int>(i), c, item);
@@ -163,7 +172,9 @@ void ResectionPanel::refreshSummary() {
     lines << tr("✕ Not refined: %1").arg(text(summary->reason));
   } else {
     lines << tr("✓ rms %1 px, σ₀ %2, %3 iterations")
-                 .arg(summary->rmsPx, 0, 'f', 2).arg(summary->sigma0, 0, 'f', 2).arg(summary->iterations);
+                 .arg(summary->rmsPx, 0, 'f', 2)
+                 .arg(summary->sigma0, 0, 'f', 2)
+                 .arg(summary->iterations);
     lines << tr("Position ± %1, %2, %3")
                  .arg(formatMillimetres(summary->positionStdM.x), formatMillimetres(summary->positionStdM.y),
                       formatMillimetres(summary->positionStdM.z));
@@ -173,7 +184,8 @@ void ResectionPanel::refreshSummary() {
                  .arg(gonFromRadians(summary->rotationStdRad.z) * 1000, 0, 'f', 1);
     for (const ExpectedError& expected : summary->expected)
       lines << tr("Overlay good to %1 mm among the points (95 %)").arg(expected.millimetres, 0, 'f', 1);
-    if (summary->outlierCount() > 0) lines << tr("▲ %1 outliers: tick them off or pick them again").arg(summary->outlierCount());
+    if (summary->outlierCount() > 0)
+      lines << tr("▲ %1 outliers: tick them off or pick them again").arg(summary->outlierCount());
     if (m_refinement.hasCandidate()) lines << tr("Hold B to see the pose before.");
   }
   m_form->summary->setText(lines.join('\n'));

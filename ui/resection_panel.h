@@ -27,7 +27,7 @@ class ResectionPanel : public QWidget {
   void useWorldPoint(const glm::dvec3& world);
 
  signals:
-  void toolBorrowed();   ///< the picture's tool is the panel's for now
+  void toolBorrowed();  ///< the picture's tool is the panel's for now
   void toolReturned();
 
  protected:

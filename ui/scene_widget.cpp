@@ -43,7 +43,8 @@ SceneWidget::~SceneWidget() {
 }
 
 void SceneWidget::initializeGL() {
-  connect(context(), &QOpenGLContext::aboutToBeDestroyed, this, &SceneWidget::releaseContext, Qt::DirectConnection);
+  connect(context(), &QOpenGLContext::aboutToBeDestroyed, this, &SceneWidget::releaseContext,
+          Qt::DirectConnection);
   m_view->attach({[this] { makeCurrent(); },
                   [this] { return context() && QOpenGLContext::currentContext() == context(); }});
 }
@@ -57,7 +58,8 @@ void SceneWidget::releaseContext() {
 
 void SceneWidget::resizeGL(int, int) {
   const double ratio = devicePixelRatioF();
-  m_view->resize(static_cast<int>(std::lround(width() * ratio)), static_cast<int>(std::lround(height() * ratio)), ratio);
+  m_view->resize(static_cast<int>(std::lround(width() * ratio)),
+                 static_cast<int>(std::lround(height() * ratio)), ratio);
 }
 
 void SceneWidget::paintGL() {
@@ -176,8 +178,10 @@ void SceneWidget::mouseMoveEvent(QMouseEvent* event) {
   m_last = event->position();
   stopMovingSoon();
   const bool pan = m_button == Qt::MiddleButton || (event->modifiers() & Qt::ShiftModifier);
-  if (pan) m_view->pan(delta);
-  else if (m_button == Qt::LeftButton) m_view->orbit(delta);
+  if (pan)
+    m_view->pan(delta);
+  else if (m_button == Qt::LeftButton)
+    m_view->orbit(delta);
   refresh();
 }
 

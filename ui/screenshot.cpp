@@ -44,8 +44,10 @@ void takeScreenshot(MainWindow& window, const QString& path, const QStringList& 
     if (!state->commands.isEmpty() && !late) {
       const QString name = state->commands.takeFirst();
       state->still = 0;
-      if (auto* action = window.findChild<QAction*>(name)) action->trigger();
-      else std::fprintf(stderr, "No command is named %s\n", qPrintable(name));
+      if (auto* action = window.findChild<QAction*>(name))
+        action->trigger();
+      else
+        std::fprintf(stderr, "No command is named %s\n", qPrintable(name));
       return;
     }
     timer->stop();

@@ -21,7 +21,8 @@ Session::Session(QObject* parent)
     : QObject(parent), m_project(std::make_shared<Project>()), m_data(std::make_shared<LoadedData>()) {
   connect(&m_render, &RenderLoop::finished, this, &Session::onRendered, Qt::QueuedConnection);
   connect(&m_render, &RenderLoop::failed, this, &Session::onFailed, Qt::QueuedConnection);
-  connect(&m_render, &RenderLoop::deviceFailed, this, [this](const Error& error) { m_messages.error(error); });
+  connect(&m_render, &RenderLoop::deviceFailed, this,
+          [this](const Error& error) { m_messages.error(error); });
   connect(&m_undo, &QUndoStack::cleanChanged, this, &Session::modifiedChanged);
   m_settle.setSingleShot(true);
   m_settle.setInterval(120);
@@ -33,8 +34,9 @@ Session::Session(QObject* parent)
 
 Session::~Session() {
   // Nobody is to be told of a session that is half gone.
-  for (QObject* part : {static_cast<QObject*>(this), static_cast<QObject*>(&m_undo), static_cast<QObject*>(&m_messages),
-                        static_cast<QObject*>(&m_jobs), static_cast<QObject*>(&m_render)})
+  for (QObject* part :
+       {static_cast<QObject*>(this), static_cast<QObject*>(&m_undo), static_cast<QObject*>(&m_messages),
+        static_cast<QObject*>(&m_jobs), static_cast<QObject*>(&m_render)})
     part->disconnect();
   m_jobs.cancelAll();
 }
@@ -77,7 +79,8 @@ void Session::setProject(Project project, bool unsaved) {
   m_render.dropPictures();
   // The first frame that has a pose shows the design at once; without one, the first picture.
   const auto& frames = m_project->frames;
-  const auto posed = std::find_if(frames.begin(), frames.end(), [](const Frame& f) { return f.cameraFromWorld; });
+  const auto posed =
+      std::find_if(frames.begin(), frames.end(), [](const Frame& f) { return f.cameraFromWorld; });
   m_frame = posed != frames.end() ? posed->id : frames.empty() ? FrameId{} : frames.front().id;
   emit projectOpened();
   emit structureChanged();
@@ -226,13 +229,14 @@ bool Session::elementVisible(DesignId id, int element) const {
   const std::string& globalId = loaded->elements[static_cast<std::size_t>(element)].globalId;
   for (const Design& design : m_project->designs) {
     if (design.id != id) continue;
-    return design.visible && std::find(design.hiddenElements.begin(), design.hiddenElements.end(), globalId) ==
-                                 design.hiddenElements.end();
+    return design.visible && std::find(design.hiddenElements.begin(), design.hiddenElements.end(),
+                                       globalId) == design.hiddenElements.end();
   }
   return false;
 }
 
-void Session::setElementsVisible(const QString& name, DesignId id, const std::vector<int>& elements, bool visible) {
+void Session::setElementsVisible(const QString& name, DesignId id, const std::vector<int>& elements,
+                                 bool visible) {
   const DesignModel* loaded = model(id);
   if (!loaded) return;
   change(name, [&](Project& project) {
@@ -324,7 +328,8 @@ void Session::onRendered(const std::shared_ptr<const RenderResult>& result) {
   const std::string problem = result->problem ? result->problem->text() : std::string();
   if (!problem.empty() && problem != m_lastRenderError) m_messages.error(*result->problem);
   m_lastRenderError = problem;
-  if (result->request.frame != m_frame && !result->request.project->findFrame(m_frame)) return;  // a closed project
+  if (result->request.frame != m_frame && !result->request.project->findFrame(m_frame))
+    return;  // a closed project
   m_rendered = result;
   if (!result->request.draft) m_renderMs = result->renderMs;
   emit pictureReady(result);

@@ -75,7 +75,8 @@ class Session : public QObject {
   bool designVisible(DesignId design) const;
   bool elementVisible(DesignId design, int element) const;
   const DesignModel* model(DesignId design) const;
-  void setElementsVisible(const QString& name, DesignId design, const std::vector<int>& elements, bool visible);
+  void setElementsVisible(const QString& name, DesignId design, const std::vector<int>& elements,
+                          bool visible);
 
   // What only this window shows: kept out of the project.
   void setRawOnly(bool on);
@@ -92,7 +93,7 @@ class Session : public QObject {
   void requestRender();
 
  signals:
-  void projectOpened();     ///< before anything else of a new project is told
+  void projectOpened();  ///< before anything else of a new project is told
   void projectChanged();
   void structureChanged();  ///< another project, or sources came or went
   void dataChanged();

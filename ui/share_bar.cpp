@@ -24,7 +24,8 @@ void ShareBar::setShares(const std::optional<ElementShares>& shares) {
 QString ShareBar::words() const {
   if (!m_shares) return tr("Not in this picture");
   return tr("%1 visible, %2 hidden, %3 unknown")
-      .arg(formatPercent(m_shares->visible), formatPercent(m_shares->hidden), formatPercent(m_shares->unknown));
+      .arg(formatPercent(m_shares->visible), formatPercent(m_shares->hidden),
+           formatPercent(m_shares->unknown));
 }
 
 void ShareBar::paintEvent(QPaintEvent*) {

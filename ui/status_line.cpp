@@ -15,7 +15,8 @@ namespace alidade {
 
 namespace {
 
-QLabel* figure(QHBoxLayout* layout, const QString& name, int width, Qt::Alignment alignment, const QString& tip) {
+QLabel* figure(QHBoxLayout* layout, const QString& name, int width, Qt::Alignment alignment,
+               const QString& tip) {
   auto* label = new QLabel;
   label->setObjectName(name);
   label->setMinimumWidth(width);
@@ -39,9 +40,12 @@ StatusLine::StatusLine(Session& session, OverlayView& view, QWidget* parent)
   auto* layout = new QHBoxLayout(this);
   layout->setContentsMargins(10, 2, 10, 2);
   layout->setSpacing(12);
-  m_pixel = figure(layout, QStringLiteral("statusPixel"), 120, Qt::AlignLeft, tr("Pixel under the cursor; 0, 0 is the middle of the top left one"));
-  m_world = figure(layout, QStringLiteral("statusWorld"), 380, Qt::AlignLeft, tr("The scanned point under the cursor and its uncertainty (one sigma)"));
-  m_distance = figure(layout, QStringLiteral("statusDistance"), 110, Qt::AlignLeft, tr("From the camera to that point"));
+  m_pixel = figure(layout, QStringLiteral("statusPixel"), 120, Qt::AlignLeft,
+                   tr("Pixel under the cursor; 0, 0 is the middle of the top left one"));
+  m_world = figure(layout, QStringLiteral("statusWorld"), 380, Qt::AlignLeft,
+                   tr("The scanned point under the cursor and its uncertainty (one sigma)"));
+  m_distance = figure(layout, QStringLiteral("statusDistance"), 110, Qt::AlignLeft,
+                      tr("From the camera to that point"));
   layout->addStretch(1);
   m_problems = new QToolButton;
   m_problems->setObjectName(QStringLiteral("statusProblems"));
@@ -49,13 +53,17 @@ StatusLine::StatusLine(Session& session, OverlayView& view, QWidget* parent)
   m_problems->setToolTip(tr("Shows the messages (Ctrl+M)"));
   m_problems->setFocusPolicy(Qt::NoFocus);
   layout->addWidget(m_problems);
-  m_pose = figure(layout, QStringLiteral("statusPose"), 0, Qt::AlignRight, tr("Where this frame's pose comes from and how good it is"));
+  m_pose = figure(layout, QStringLiteral("statusPose"), 0, Qt::AlignRight,
+                  tr("Where this frame's pose comes from and how good it is"));
   rule(layout);
-  m_points = figure(layout, QStringLiteral("statusPoints"), 0, Qt::AlignRight, tr("Scan points drawn of all"));
+  m_points =
+      figure(layout, QStringLiteral("statusPoints"), 0, Qt::AlignRight, tr("Scan points drawn of all"));
   rule(layout);
-  m_error = figure(layout, QStringLiteral("statusError"), 66, Qt::AlignRight, tr("The largest error of a drawn design edge"));
+  m_error = figure(layout, QStringLiteral("statusError"), 66, Qt::AlignRight,
+                   tr("The largest error of a drawn design edge"));
   rule(layout);
-  m_speed = figure(layout, QStringLiteral("statusSpeed"), 60, Qt::AlignRight, tr("Time that this picture took"));
+  m_speed =
+      figure(layout, QStringLiteral("statusSpeed"), 60, Qt::AlignRight, tr("Time that this picture took"));
 
   connect(&view, &OverlayView::cursorChanged, this, &StatusLine::refreshCursor);
   connect(&session, &Session::pictureReady, this, &StatusLine::refreshPicture);
@@ -87,7 +95,8 @@ void StatusLine::refreshCursor() {
     return;
   }
   QString words = formatWorld(*readout.world);
-  words += readout.uncertaintyM ? QStringLiteral(" ± %1").arg(formatMillimetres(*readout.uncertaintyM)) : tr(" ± not known");
+  words += readout.uncertaintyM ? QStringLiteral(" ± %1").arg(formatMillimetres(*readout.uncertaintyM))
+                                : tr(" ± not known");
   m_world->setText(words);
   m_distance->setText(tr("%1 away").arg(formatDistance(readout.distanceM)));
 }
@@ -108,8 +117,9 @@ void StatusLine::refreshPicture() {
   }
   const OverlayPicture& picture = result->frame.picture;
   m_points->setText(formatPointsOf(picture.pointsDrawn, picture.pointsTotal));
-  m_error->setText(picture.worstErrorPx > 0 && picture.worstErrorPx < 0.005 ? QStringLiteral("< 0.01 px")
-                                                                            : QStringLiteral("%1 px").arg(picture.worstErrorPx, 0, 'f', 2));
+  m_error->setText(picture.worstErrorPx > 0 && picture.worstErrorPx < 0.005
+                       ? QStringLiteral("< 0.01 px")
+                       : QStringLiteral("%1 px").arg(picture.worstErrorPx, 0, 'f', 2));
   m_speed->setText(QStringLiteral("%1 ms").arg(result->renderMs, 0, 'f', 0));
 }
 

@@ -24,15 +24,19 @@ ThemeColours g_colours;
 ThemeColours coloursOf(Theme theme) {
   switch (theme) {
     case Theme::Light:
-      return {QColor(QRgb(0xE9E9E9)), QColor(QRgb(0xF5F5F5)), QColor(QRgb(0xFFFFFF)), QColor(QRgb(0xC4C4C4)), QColor(QRgb(0x1B1B1B)), QColor(QRgb(0x5A5A5A)), QColor(QRgb(0x0B63A8)), QColor(QRgb(0xFFFFFF)), QColor(QRgb(0xC9C9C9)),
-              QColor(QRgb(0x1B7A3A)), QColor(QRgb(0x9A6200)), QColor(QRgb(0xB3261E))};
+      return {QColor(QRgb(0xE9E9E9)), QColor(QRgb(0xF5F5F5)), QColor(QRgb(0xFFFFFF)), QColor(QRgb(0xC4C4C4)),
+              QColor(QRgb(0x1B1B1B)), QColor(QRgb(0x5A5A5A)), QColor(QRgb(0x0B63A8)), QColor(QRgb(0xFFFFFF)),
+              QColor(QRgb(0xC9C9C9)), QColor(QRgb(0x1B7A3A)), QColor(QRgb(0x9A6200)), QColor(QRgb(0xB3261E))};
     case Theme::HighContrast:
-      return {QColor(QRgb(0x000000)), QColor(QRgb(0x000000)), QColor(QRgb(0x141414)), QColor(QRgb(0xFFFFFF)), QColor(QRgb(0xFFFFFF)), QColor(QRgb(0xE4E4E4)), QColor(QRgb(0xFFD500)), QColor(QRgb(0x000000)), QColor(QRgb(0x000000)),
-              QColor(QRgb(0x5CFF9A)), QColor(QRgb(0xFFD500)), QColor(QRgb(0xFF8A80))};
-    case Theme::Dark: break;
+      return {QColor(QRgb(0x000000)), QColor(QRgb(0x000000)), QColor(QRgb(0x141414)), QColor(QRgb(0xFFFFFF)),
+              QColor(QRgb(0xFFFFFF)), QColor(QRgb(0xE4E4E4)), QColor(QRgb(0xFFD500)), QColor(QRgb(0x000000)),
+              QColor(QRgb(0x000000)), QColor(QRgb(0x5CFF9A)), QColor(QRgb(0xFFD500)), QColor(QRgb(0xFF8A80))};
+    case Theme::Dark:
+      break;
   }
-  return {QColor(QRgb(0x262626)), QColor(QRgb(0x2D2D2D)), QColor(QRgb(0x3A3A3A)), QColor(QRgb(0x454545)), QColor(QRgb(0xE4E4E4)), QColor(QRgb(0xA6A6A6)), QColor(QRgb(0x4FA3E0)), QColor(QRgb(0x101010)), QColor(QRgb(0x1C1C1C)),
-          QColor(QRgb(0x62C48A)), QColor(QRgb(0xE8B34A)), QColor(QRgb(0xF0857D))};
+  return {QColor(QRgb(0x262626)), QColor(QRgb(0x2D2D2D)), QColor(QRgb(0x3A3A3A)), QColor(QRgb(0x454545)),
+          QColor(QRgb(0xE4E4E4)), QColor(QRgb(0xA6A6A6)), QColor(QRgb(0x4FA3E0)), QColor(QRgb(0x101010)),
+          QColor(QRgb(0x1C1C1C)), QColor(QRgb(0x62C48A)), QColor(QRgb(0xE8B34A)), QColor(QRgb(0xF0857D))};
 }
 
 QPalette paletteOf(const ThemeColours& c) {
@@ -56,7 +60,8 @@ QPalette paletteOf(const ThemeColours& c) {
   p.setColor(QPalette::Light, c.raised);
   p.setColor(QPalette::Midlight, c.raised);
   p.setColor(QPalette::Shadow, Qt::black);
-  for (const auto role : {QPalette::WindowText, QPalette::Text, QPalette::ButtonText, QPalette::HighlightedText}) {
+  for (const auto role :
+       {QPalette::WindowText, QPalette::Text, QPalette::ButtonText, QPalette::HighlightedText}) {
     QColor faint = c.dimText;
     faint.setAlpha(140);
     p.setColor(QPalette::Disabled, role, faint);
@@ -70,9 +75,9 @@ QString styleSheetOf(const ThemeColours& c) {
   if (!file.open(QIODevice::ReadOnly)) return {};
   QString sheet = QString::fromUtf8(file.readAll());
   const std::pair<const char*, QColor> names[] = {
-      {"@ground", c.ground}, {"@panel", c.panel},   {"@raised", c.raised},     {"@line", c.line},
-      {"@text", c.text},     {"@dimText", c.dimText}, {"@accent", c.accent}, {"@onAccent", c.onAccent},
-      {"@bad", c.bad}};
+      {"@ground", c.ground}, {"@panel", c.panel},       {"@raised", c.raised},
+      {"@line", c.line},     {"@text", c.text},         {"@dimText", c.dimText},
+      {"@accent", c.accent}, {"@onAccent", c.onAccent}, {"@bad", c.bad}};
   for (const auto& [name, colour] : names) {
     // Whole words only: @text is no part of @textured.
     sheet.replace(QRegularExpression(QString::fromLatin1(name) + QStringLiteral("\\b")), colour.name());
@@ -143,9 +148,12 @@ const ThemeColours& colours() {
 
 QString themeName(Theme theme) {
   switch (theme) {
-    case Theme::Dark: return QStringLiteral("dark");
-    case Theme::Light: return QStringLiteral("light");
-    case Theme::HighContrast: return QStringLiteral("contrast");
+    case Theme::Dark:
+      return QStringLiteral("dark");
+    case Theme::Light:
+      return QStringLiteral("light");
+    case Theme::HighContrast:
+      return QStringLiteral("contrast");
   }
   return {};
 }

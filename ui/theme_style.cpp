@@ -32,9 +32,13 @@ void ThemeStyle::drawPrimitive(PrimitiveElement element, const QStyleOption* opt
   painter->setBrush(c.ground);
   painter->drawRoundedRect(box, 2, 2);
   painter->setPen(QPen(enabled ? c.text : c.dimText, side / 7.0, Qt::SolidLine, Qt::RoundCap, Qt::RoundJoin));
-  const auto at = [&](double x, double y) { return box.topLeft() + QPointF(x * box.width(), y * box.height()); };
-  if (option->state & State_On) painter->drawPolyline(QPolygonF({at(0.24, 0.52), at(0.44, 0.73), at(0.78, 0.28)}));
-  else if (option->state & State_NoChange) painter->drawLine(at(0.26, 0.5), at(0.74, 0.5));
+  const auto at = [&](double x, double y) {
+    return box.topLeft() + QPointF(x * box.width(), y * box.height());
+  };
+  if (option->state & State_On)
+    painter->drawPolyline(QPolygonF({at(0.24, 0.52), at(0.44, 0.73), at(0.78, 0.28)}));
+  else if (option->state & State_NoChange)
+    painter->drawLine(at(0.26, 0.5), at(0.74, 0.5));
   painter->restore();
 }
 

@@ -30,7 +30,8 @@ FrameStrip::FrameStrip(Session& session, QWidget* parent) : QWidget(parent), m_s
 int FrameStrip::frameAt(double x) const {
   const int count = static_cast<int>(m_session.project()->frames.size());
   if (count == 0) return -1;
-  return std::clamp(static_cast<int>(std::floor((x - 6) / std::max(1.0, width() - 12.0) * count)), 0, count - 1);
+  return std::clamp(static_cast<int>(std::floor((x - 6) / std::max(1.0, width() - 12.0) * count)), 0,
+                    count - 1);
 }
 
 void FrameStrip::paintEvent(QPaintEvent*) {
@@ -63,9 +64,15 @@ void FrameStrip::paintTicks(QPainter& painter, const QRectF& area) const {
     const double x = area.left() + static_cast<double>(i) * step;
     const double mm = poseMillimetresAt(frames[i], 10.0);
     switch (frames[i].poseSource) {
-      case PoseSource::None: painter.fillRect(QRectF(x, floor - 3, w, 3), QBrush(colours().bad, Qt::Dense4Pattern)); break;
-      case PoseSource::Interpolated: painter.fillRect(QRectF(x, floor - 8, w, 8), QBrush(colours().dimText, Qt::Dense4Pattern)); break;
-      case PoseSource::File: painter.fillRect(QRectF(x, floor - 10, w, 10), colours().line); break;
+      case PoseSource::None:
+        painter.fillRect(QRectF(x, floor - 3, w, 3), QBrush(colours().bad, Qt::Dense4Pattern));
+        break;
+      case PoseSource::Interpolated:
+        painter.fillRect(QRectF(x, floor - 8, w, 8), QBrush(colours().dimText, Qt::Dense4Pattern));
+        break;
+      case PoseSource::File:
+        painter.fillRect(QRectF(x, floor - 10, w, 10), colours().line);
+        break;
       case PoseSource::Refined: {
         // Taller is better: 1 mm at 10 m fills the strip, 100 mm is as low as a pose from a file.
         const double good = mm > 0 ? std::clamp(1.0 - std::log10(std::max(mm, 1.0)) / 2.0, 0.0, 1.0) : 0.5;
@@ -105,8 +112,9 @@ bool FrameStrip::event(QEvent* event) {
     const int index = frameAt(help->pos().x());
     if (index >= 0) {
       const Frame& frame = m_session.project()->frames[static_cast<std::size_t>(index)];
-      QToolTip::showText(help->globalPos(), QStringLiteral("%1, %2\n%3").arg(text(frame.name), formatSeconds(frame.timeSecs),
-                                                                             poseSummary(frame)));
+      QToolTip::showText(help->globalPos(),
+                         QStringLiteral("%1, %2\n%3")
+                             .arg(text(frame.name), formatSeconds(frame.timeSecs), poseSummary(frame)));
     }
     return true;
   }
@@ -171,9 +179,11 @@ void Timeline::refresh() {
   m_time->setText(frame ? formatSeconds(frame->timeSecs) : QString());
   m_list->setCurrentIndex(index);
   if (m_playback.playing() || m_playback.dropped() > 0) {
-    m_rate->setText(tr("%1 fps shown, %2 dropped").arg(m_playback.shownPerSecond(), 0, 'f', 1).arg(m_playback.dropped()));
+    m_rate->setText(
+        tr("%1 fps shown, %2 dropped").arg(m_playback.shownPerSecond(), 0, 'f', 1).arg(m_playback.dropped()));
   } else {
-    m_rate->setText(count > 1 ? tr("%1 fps camera").arg(Playback::cameraRate(*m_session.project()), 0, 'f', 1) : QString());
+    m_rate->setText(count > 1 ? tr("%1 fps camera").arg(Playback::cameraRate(*m_session.project()), 0, 'f', 1)
+                              : QString());
   }
 }
 

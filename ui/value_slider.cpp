@@ -78,7 +78,9 @@ void ValueSlider::reset() {
 }
 
 QString ValueSlider::figure() const {
-  return QStringLiteral("%1 %2").arg(m_value * m_range.displayFactor, 0, 'f', m_range.decimals).arg(m_range.unit);
+  return QStringLiteral("%1 %2")
+      .arg(m_value * m_range.displayFactor, 0, 'f', m_range.decimals)
+      .arg(m_range.unit);
 }
 
 void ValueSlider::paintEvent(QPaintEvent*) {
@@ -88,7 +90,8 @@ void ValueSlider::paintEvent(QPaintEvent*) {
   icon(m_icon).paint(&p, QRect(3, (height() - 16) / 2, 16, 16));
   const QRectF bar = track();
   p.setPen(c.text);
-  p.drawText(QRectF(kIconWidth, 0, bar.left() - kIconWidth - 6, height()), Qt::AlignVCenter | Qt::AlignLeft, m_label);
+  p.drawText(QRectF(kIconWidth, 0, bar.left() - kIconWidth - 6, height()), Qt::AlignVCenter | Qt::AlignLeft,
+             m_label);
   p.setPen(Qt::NoPen);
   p.setBrush(c.line);
   p.drawRoundedRect(bar, 2, 2);
@@ -102,7 +105,8 @@ void ValueSlider::paintEvent(QPaintEvent*) {
   p.setBrush(m_pressed || hasFocus() ? c.accent : c.text);
   p.drawEllipse(QPointF(x, bar.center().y()), 6, 6);
   p.setPen(c.text);
-  p.drawText(QRectF(width() - kFigureWidth + 4, 0, kFigureWidth - 6, height()), Qt::AlignVCenter | Qt::AlignRight, figure());
+  p.drawText(QRectF(width() - kFigureWidth + 4, 0, kFigureWidth - 6, height()),
+             Qt::AlignVCenter | Qt::AlignRight, figure());
 }
 
 void ValueSlider::mousePressEvent(QMouseEvent* event) {
@@ -148,14 +152,25 @@ void ValueSlider::keyPressEvent(QKeyEvent* event) {
   const double size = event->modifiers() & Qt::ShiftModifier ? 0.005 : 0.05;
   switch (event->key()) {
     case Qt::Key_Left:
-    case Qt::Key_Down: step(-size, false); return;
+    case Qt::Key_Down:
+      step(-size, false);
+      return;
     case Qt::Key_Right:
-    case Qt::Key_Up: step(size, false); return;
-    case Qt::Key_Home: setByUser(m_range.low, false); return;
-    case Qt::Key_End: setByUser(m_range.high, false); return;
+    case Qt::Key_Up:
+      step(size, false);
+      return;
+    case Qt::Key_Home:
+      setByUser(m_range.low, false);
+      return;
+    case Qt::Key_End:
+      setByUser(m_range.high, false);
+      return;
     case Qt::Key_Return:
-    case Qt::Key_Enter: openField(QString()); return;
-    default: break;
+    case Qt::Key_Enter:
+      openField(QString());
+      return;
+    default:
+      break;
   }
   const QString typed = event->text();
   if (!typed.isEmpty() && (typed[0].isDigit() || typed[0] == '.')) {

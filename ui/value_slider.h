@@ -21,7 +21,7 @@ class ValueSlider : public QWidget {
     bool logarithmic = false;  ///< equal drags multiply; low must be above 0
     double displayFactor = 1;  ///< figure shown = value × factor
     int decimals = 0;
-    QString unit;              ///< "%", "×"
+    QString unit;  ///< "%", "×"
   };
   ValueSlider(const QString& label, const QString& iconName, const Range& range, QWidget* parent = nullptr);
 

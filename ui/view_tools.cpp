@@ -43,7 +43,8 @@ void editAnnotation(OverlayView& view, AnnotationId id) {
   if (!annotation) return;
   const auto anchor = anchorOf(view, *annotation);
   if (!anchor) return;
-  const glm::dvec2 at = *anchor + (annotation->kind == AnnotationKind::Text ? glm::dvec2(0) : annotation->offsetPx);
+  const glm::dvec2 at =
+      *anchor + (annotation->kind == AnnotationKind::Text ? glm::dvec2(0) : annotation->offsetPx);
   Session& session = view.session();
   view.editText(view.viewFromRaw(at), text(annotation->text), [&session, id](const QString& typed) {
     if (typed.isEmpty()) return;
@@ -103,7 +104,8 @@ class SelectTool : public ViewTool {
   }
 
   void doubleClick(OverlayView& view, const QMouseEvent& event) override {
-    if (const AnnotationId id = view.probe().annotationAt(view.rawFromView(event.position()))) editAnnotation(view, id);
+    if (const AnnotationId id = view.probe().annotationAt(view.rawFromView(event.position())))
+      editAnnotation(view, id);
   }
 
  private:
@@ -115,7 +117,9 @@ class SelectTool : public ViewTool {
 
 class PickTool : public ViewTool {
  public:
-  QString hint() const override { return OverlayView::tr("Pick: click a point to read its coordinates. Esc leaves"); }
+  QString hint() const override {
+    return OverlayView::tr("Pick: click a point to read its coordinates. Esc leaves");
+  }
   void press(OverlayView& view, const QMouseEvent& event) override {
     const glm::dvec2 raw = view.rawFromView(event.position());
     const CursorReadout readout = view.probe().readout(raw);
@@ -149,7 +153,8 @@ class PickTool : public ViewTool {
 
 class MeasureTool : public ViewTool {
  public:
-  explicit MeasureTool(std::shared_ptr<MeasuredDistances> measurements) : m_measurements(std::move(measurements)) {}
+  explicit MeasureTool(std::shared_ptr<MeasuredDistances> measurements)
+      : m_measurements(std::move(measurements)) {}
   QString hint() const override {
     return m_first ? OverlayView::tr("Measure: click the second point. Esc starts again")
                    : OverlayView::tr("Measure: click the first point on the scan. Esc leaves");
@@ -169,9 +174,9 @@ class MeasureTool : public ViewTool {
       m.uncertaintyM = std::hypot(*m_first->uncertaintyM, *readout.uncertaintyM);
     m_measurements->push_back(m);
     m_first.reset();
-    view.session().messages().info(
-        OverlayView::tr("Measured %1 m from %2 to %3")
-            .arg(QString::number(glm::length(m.to - m.from), 'f', 3), formatWorld(m.from), formatWorld(m.to)));
+    view.session().messages().info(OverlayView::tr("Measured %1 m from %2 to %3")
+                                       .arg(QString::number(glm::length(m.to - m.from), 'f', 3),
+                                            formatWorld(m.from), formatWorld(m.to)));
   }
   void paint(OverlayView& view, QPainter& painter) override {
     paintDistances(view, painter, *m_measurements);
@@ -181,7 +186,8 @@ class MeasureTool : public ViewTool {
         drawCasedLine(painter, a, b, QColor(120, 230, 255));
         if (view.cursorReadout().world)
           drawCasedText(painter, b + QPointF(12, -10),
-                        QStringLiteral("%1 m").arg(glm::length(*view.cursorReadout().world - *m_first->world), 0, 'f', 3),
+                        QStringLiteral("%1 m").arg(glm::length(*view.cursorReadout().world - *m_first->world),
+                                                   0, 'f', 3),
                         Qt::white);
       }
     }
@@ -199,13 +205,18 @@ class AnnotateTool : public ViewTool {
   explicit AnnotateTool(AnnotationKind kind) : m_kind(kind) {}
   QString hint() const override {
     switch (m_kind) {
-      case AnnotationKind::Text: return OverlayView::tr("Text: click where it belongs. Esc leaves");
-      case AnnotationKind::Arrow: return OverlayView::tr("Arrow: press on the point, drag to the tail. Esc leaves");
-      case AnnotationKind::Callout: return OverlayView::tr("Callout: press on the point, drag to the text. Esc leaves");
+      case AnnotationKind::Text:
+        return OverlayView::tr("Text: click where it belongs. Esc leaves");
+      case AnnotationKind::Arrow:
+        return OverlayView::tr("Arrow: press on the point, drag to the tail. Esc leaves");
+      case AnnotationKind::Callout:
+        return OverlayView::tr("Callout: press on the point, drag to the text. Esc leaves");
     }
     return {};
   }
-  void press(OverlayView& view, const QMouseEvent& event) override { m_tip = view.rawFromView(event.position()); }
+  void press(OverlayView& view, const QMouseEvent& event) override {
+    m_tip = view.rawFromView(event.position());
+  }
 
   void release(OverlayView& view, const QMouseEvent& event) override {
     if (!m_tip) return;
@@ -232,15 +243,18 @@ class AnnotateTool : public ViewTool {
 
   void paint(OverlayView& view, QPainter& painter) override {
     if (m_tip && view.cursorRaw() && m_kind != AnnotationKind::Text)
-      drawCasedLine(painter, view.viewFromRaw(*m_tip), view.viewFromRaw(*view.cursorRaw()), QColor(255, 200, 0));
+      drawCasedLine(painter, view.viewFromRaw(*m_tip), view.viewFromRaw(*view.cursorRaw()),
+                    QColor(255, 200, 0));
   }
   bool escape() override { return std::exchange(m_tip, std::nullopt).has_value(); }
 
  private:
   static void add(Session& session, Annotation made) {
-    for (const Annotation& a : session.project()->annotations) made.id.value = std::max(made.id.value, a.id.value);
+    for (const Annotation& a : session.project()->annotations)
+      made.id.value = std::max(made.id.value, a.id.value);
     ++made.id.value;
-    session.change(OverlayView::tr("Add annotation"), [&](Project& project) { project.annotations.push_back(made); });
+    session.change(OverlayView::tr("Add annotation"),
+                   [&](Project& project) { project.annotations.push_back(made); });
     SelectionState selection;
     selection.annotation = made.id;
     session.select(selection);
@@ -254,7 +268,10 @@ class PointTool : public ViewTool {
  public:
   using Picked = std::function<void(const glm::dvec2&, const std::optional<glm::dvec3>&)>;
   PointTool(const QString& hint, bool wantsScan, Picked picked, std::function<void()> cancelled)
-      : m_hint(hint), m_wantsScan(wantsScan), m_picked(std::move(picked)), m_cancelled(std::move(cancelled)) {}
+      : m_hint(hint),
+        m_wantsScan(wantsScan),
+        m_picked(std::move(picked)),
+        m_cancelled(std::move(cancelled)) {}
   QString hint() const override { return m_hint; }
   void press(OverlayView& view, const QMouseEvent& event) override {
     const glm::dvec2 raw = view.rawFromView(event.position());
@@ -297,7 +314,8 @@ std::unique_ptr<ViewTool> makeAnnotateTool(AnnotationKind kind) {
 }
 std::unique_ptr<ViewTool> makePointTool(
     const QString& hint, bool wantsScan,
-    std::function<void(const glm::dvec2&, const std::optional<glm::dvec3>&)> picked, std::function<void()> cancelled) {
+    std::function<void(const glm::dvec2&, const std::optional<glm::dvec3>&)> picked,
+    std::function<void()> cancelled) {
   return std::make_unique<PointTool>(hint, wantsScan, std::move(picked), std::move(cancelled));
 }
 

@@ -44,9 +44,10 @@ class DropArea : public QWidget {
                WelcomePage::tr("Drop a scan, pictures and a design together"));
     p.setPen(c.dimText);
     p.setFont(smallFont());
-    p.drawText(rect().adjusted(24, height() / 2 + 16, -24, -8), Qt::AlignTop | Qt::AlignHCenter | Qt::TextWordWrap,
-               WelcomePage::tr("LAS, PLY, PCD · images, video · COLMAP, OpenCV, TUM cameras · IFC, OBJ, glTF, STL · "
-                               "stake-out points as CSV"));
+    p.drawText(
+        rect().adjusted(24, height() / 2 + 16, -24, -8), Qt::AlignTop | Qt::AlignHCenter | Qt::TextWordWrap,
+        WelcomePage::tr("LAS, PLY, PCD · images, video · COLMAP, OpenCV, TUM cameras · IFC, OBJ, glTF, STL · "
+                        "stake-out points as CSV"));
   }
 
  private:
@@ -65,7 +66,8 @@ QPushButton* actionButton(QAction* action, bool first) {
 
 }  // namespace
 
-WelcomePage::WelcomePage(ProjectFiles& files, const Actions& actions, QWidget* parent) : QWidget(parent), m_files(files) {
+WelcomePage::WelcomePage(ProjectFiles& files, const Actions& actions, QWidget* parent)
+    : QWidget(parent), m_files(files) {
   setObjectName(QStringLiteral("welcomePage"));
   auto* outer = new QHBoxLayout(this);
   outer->addStretch(1);
@@ -77,7 +79,8 @@ WelcomePage::WelcomePage(ProjectFiles& files, const Actions& actions, QWidget* p
   auto* title = new QLabel(tr("Alidade"));
   title->setProperty("role", "title");
   title->setStyleSheet(QStringLiteral("font-size: 30px;"));
-  auto* under = new QLabel(tr("See the design on the picture, bent by the lens and hidden where the scan hides it."));
+  auto* under =
+      new QLabel(tr("See the design on the picture, bent by the lens and hidden where the scan hides it."));
   under->setWordWrap(true);
   column->addWidget(title);
   column->addWidget(under);
@@ -115,9 +118,11 @@ void WelcomePage::refreshRecent() {
   const QStringList paths = m_files.recent();
   for (const QString& path : paths) {
     const QFileInfo info(path);
-    auto* button = new QPushButton(QStringLiteral("%1     %2").arg(info.completeBaseName(), info.absolutePath()));
+    auto* button =
+        new QPushButton(QStringLiteral("%1     %2").arg(info.completeBaseName(), info.absolutePath()));
     button->setFlat(true);
-    button->setStyleSheet(QStringLiteral("text-align: left; background: transparent; border-color: transparent; padding: 4px 6px;"));
+    button->setStyleSheet(QStringLiteral(
+        "text-align: left; background: transparent; border-color: transparent; padding: 4px 6px;"));
     button->setToolTip(path);
     connect(button, &QPushButton::clicked, this, [this, path] { m_files.open(path); });
     m_recent->addWidget(button);

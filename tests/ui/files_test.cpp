@@ -87,7 +87,8 @@ TEST_F(EmptyWindow, AFileThatIsNoProjectIsRefusedInASentence) {
 TEST_F(EmptyWindow, OpensTheRoad) {
   const fs::path road = fs::path(ALIDADE_SHARED_DATA_DIR) / "road";
   if (!fs::exists(road / "road.ifc")) GTEST_SKIP() << "THE ROAD DATA IS ABSENT: " << road;
-  window.openPaths({QString::fromStdString((road / "road.ifc").string()), QString::fromStdString((road / "sparse").string()),
+  window.openPaths({QString::fromStdString((road / "road.ifc").string()),
+                    QString::fromStdString((road / "sparse").string()),
                     QString::fromStdString((road / "101_0367_0007.JPG").string()),
                     QString::fromStdString((road / "road_mesh_sampled.las").string())});
   ASSERT_TRUE(waitFor([&] { return window.session().hasProject(); }, 180'000));

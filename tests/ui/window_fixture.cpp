@@ -78,7 +78,8 @@ std::optional<glm::dvec2> OpenWindow::pixelOnScan(bool supported, const glm::dve
   const PictureProbe& probe = view().probe();
   for (int y = probe.rawHeight() / 4; y < probe.rawHeight() * 3 / 4; y += 2)
     for (int x = probe.rawWidth() / 4; x < probe.rawWidth() * 3 / 4; x += 2)
-      if (glm::length(glm::dvec2(x, y) - away) > 20 && probe.readout({x, y}).world.has_value() == supported && probe.stakePointAt({x, y}, 20.0).empty())
+      if (glm::length(glm::dvec2(x, y) - away) > 20 && probe.readout({x, y}).world.has_value() == supported &&
+          probe.stakePointAt({x, y}, 20.0).empty())
         return glm::dvec2(x, y);
   return std::nullopt;
 }

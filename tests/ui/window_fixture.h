@@ -31,7 +31,9 @@ class OpenWindow : public ::testing::Test {
 
   Session& session() { return window->session(); }
   OverlayView& view() { return window->overlay(); }
-  bool settle() { return waitFor([this] { return window->settled(); }); }
+  bool settle() {
+    return waitFor([this] { return window->settled(); });
+  }
   /// A picture pixel in the middle of a patch that shows one visible element.
   std::optional<glm::dvec2> pixelOnElement();
   /// A picture pixel that the scan supports, or one that it does not; at least 20 px from `away`.
@@ -39,7 +41,9 @@ class OpenWindow : public ::testing::Test {
   /// The cursor comes to rest there. (QTest moves the server's pointer and does not wait for it.)
   void hover(const glm::dvec2& raw);
   void click(const glm::dvec2& raw, Qt::MouseButton button = Qt::LeftButton);
-  void key(Qt::Key key, Qt::KeyboardModifiers modifiers = Qt::NoModifier) { QTest::keyClick(&view(), key, modifiers); }
+  void key(Qt::Key key, Qt::KeyboardModifiers modifiers = Qt::NoModifier) {
+    QTest::keyClick(&view(), key, modifiers);
+  }
 
   QTemporaryDir folder;
   std::unique_ptr<MainWindow> window;

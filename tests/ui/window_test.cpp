@@ -49,7 +49,8 @@ TEST_F(OpenWindow, AClickedElementIsSelectedInTreeAndProperties) {
   EXPECT_EQ(session().selection().design, expected->design);
   EXPECT_EQ(session().selection().element, expected->element);
 
-  const DesignElement& element = session().model(expected->design)->elements[static_cast<std::size_t>(expected->element)];
+  const DesignElement& element =
+      session().model(expected->design)->elements[static_cast<std::size_t>(expected->element)];
   const auto* tree = window->findChild<QTreeView*>("projectTree");
   const QString row = tree->currentIndex().data().toString();
   EXPECT_TRUE(row.startsWith(QString::fromStdString(element.name))) << row.toStdString();
@@ -134,7 +135,8 @@ TEST_F(OpenWindow, TheWheelKeepsThePixelUnderTheCursor) {
   const QPointF at(view().width() * 0.3, view().height() * 0.4);
   const glm::dvec2 raw = view().rawFromView(at);
   const double before = view().zoom();
-  QWheelEvent wheel(at, view().mapToGlobal(at), {}, {0, 240}, Qt::NoButton, Qt::NoModifier, Qt::NoScrollPhase, false);
+  QWheelEvent wheel(at, view().mapToGlobal(at), {}, {0, 240}, Qt::NoButton, Qt::NoModifier, Qt::NoScrollPhase,
+                    false);
   QApplication::sendEvent(&view(), &wheel);
   EXPECT_NEAR(view().zoom(), before * 1.44, 1e-9);
   EXPECT_NEAR(glm::length(view().rawFromView(at) - raw), 0.0, 1e-9);
@@ -277,7 +279,8 @@ TEST_F(OpenWindow, ARunningJobIsCancelledFromTheStrip) {
       },
       [&](bool wasCancelled) { cancelled = wasCancelled; });
   QWidget* strip = window->findChild<QWidget*>("jobStrip");
-  ASSERT_TRUE(waitFor([&] { return strip->isVisible() && strip->findChild<QAbstractButton*>("cancelJob"); }, 5000));
+  ASSERT_TRUE(
+      waitFor([&] { return strip->isVisible() && strip->findChild<QAbstractButton*>("cancelJob"); }, 5000));
   QTest::mouseClick(strip->findChild<QAbstractButton*>("cancelJob"), Qt::LeftButton);
   ASSERT_TRUE(waitFor([&] { return session().jobs().idle(); }, 5000));
   EXPECT_TRUE(cancelled);
@@ -330,7 +333,9 @@ TEST_F(OpenWindow, ThePaletteRunsACommandByItsName) {
   QTest::keyClicks(edit, "last frame");
   QTest::keyClick(edit, Qt::Key_Return);
   EXPECT_FALSE(palette->isVisible());
-  ASSERT_TRUE(waitFor([&] { return session().frameIndex() == static_cast<int>(session().project()->frames.size()) - 1; }, 3000));
+  ASSERT_TRUE(waitFor(
+      [&] { return session().frameIndex() == static_cast<int>(session().project()->frames.size()) - 1; },
+      3000));
 }
 
 }  // namespace alidade::test
