@@ -3,7 +3,6 @@
 # Third-party libraries, each found once here and linked only by its owner folder.
 
 find_package(Threads REQUIRED)
-find_package(PkgConfig REQUIRED)
 find_package(Qt6 6.4 REQUIRED COMPONENTS Core Gui Widgets Sql Svg OpenGL OpenGLWidgets Test)
 find_package(fmt REQUIRED)
 find_package(spdlog REQUIRED)
@@ -20,17 +19,10 @@ find_package(embree 3 REQUIRED)
 find_package(GTest REQUIRED)
 find_package(benchmark REQUIRED)
 find_package(PNG REQUIRED)
-pkg_check_modules(PUGIXML REQUIRED IMPORTED_TARGET pugixml)
 
 # Never GUISupportQt: Debian's is built on Qt 5.
 find_package(VTK 9.1 REQUIRED COMPONENTS
   CommonCore CommonDataModel CommonExecutionModel FiltersCore FiltersSources InteractionStyle
   InteractionWidgets RenderingAnnotation RenderingCore RenderingFreeType RenderingOpenGL2 RenderingUI)
-
-# find_package(PCL) drags Qt 5 in and fails here; the plain names are enough.
-find_path(PCL_INCLUDE_DIR pcl/pcl_base.h PATH_SUFFIXES pcl-1.13 REQUIRED)
-add_library(alidade_pcl INTERFACE)
-target_include_directories(alidade_pcl SYSTEM INTERFACE "${PCL_INCLUDE_DIR}")
-target_link_libraries(alidade_pcl INTERFACE pcl_common pcl_io Eigen3::Eigen)
 
 find_library(IFCPP_LIBRARY NAMES IfcPlusPlus REQUIRED)

@@ -41,7 +41,7 @@ const std::map<std::string, std::vector<std::string>> kOwners = {
     {"vulkan/", {"src/gpu"}},
     {"vtk", {"src/scene"}},
     {"ceres/", {"src/adjust"}},
-    {"pcl/", {"src/cloud", "plugins/pcd"}},
+    {"pcl/", {"src/cloud"}},
     {"opencv2/", {"src/io", "plugins/opencv-calib", "plugins/pictures"}},
     {"ifcpp/", {"plugins/ifc"}},
     {"assimp/", {"plugins/mesh"}},
