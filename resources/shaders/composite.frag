@@ -49,14 +49,19 @@ float dots(vec2 at, float period) {
 
 vec3 designColour(vec3 c) { return frame.picture.z > 0.5 ? vec3(luminance(c)) : c; }
 
-// Adds what the scan says of the same element at eight pixels: the corners or the sides of a square, 2 r wide.
-uvec4 votesAround(ivec2 at, uint mine, int r) {
+// Drivers on the CPU run both sides of every branch, for several pixels at a time, but leave a loop that no
+// pixel needs: rare work stands in loops with a bound of zero where it is not wanted.
+
+// Adds what the scan says of the same element at the corners and sides of squares 2, 6 and 10 pixels wide.
+uvec4 votesAround(ivec2 at, uint mine, int first, int end) {
   ivec2 last = ivec2(frame.lens.domain.zw) - 1;
   uvec4 votes = uvec4(0u);
-  for (int i = 0; i < 9; ++i) {
-    if (i == 4) continue;
-    uint other = texelFetch(faceKey, clamp(at + r * ivec2(i % 3 - 1, i / 3 - 1), ivec2(0), last), 0).r;
-    if ((other >> 2) == mine) ++votes[other & 3u];
+  for (int i = first; i < end; ++i) {
+    int k = i & 7;
+    k += k >> 2;  // 0 to 8 without the middle
+    ivec2 side = (2 * (i >> 3) + 1) * ivec2(k % 3 - 1, k / 3 - 1);
+    uint other = texelFetch(faceKey, clamp(at + side, ivec2(0), last), 0).r;
+    if ((other >> 2) == mine) votes += uvec4(equal(uvec4(0u, 1u, 2u, 3u), uvec4(other & 3u)));
   }
   return votes;
 }
@@ -67,21 +72,24 @@ uvec4 votesAround(ivec2 at, uint mine, int r) {
 uint drawnState(ivec2 at, uint key) {
   uint own = key & 3u, mine = key >> 2;
   ivec2 last = ivec2(frame.lens.domain.zw) - 1;
-  bool isCalm = own != barelyHidden;
-  for (int i = 0; i < 4 && isCalm; ++i) {
-    ivec2 side = (i & 1) != 0 ? ivec2(1, 0) : ivec2(0, 1);
-    uint other = texelFetch(faceKey, clamp(at + ((i & 2) != 0 ? side : -side), ivec2(0), last), 0).r;
-    isCalm = other == key || (other >> 2) != mine;
+  bool isCalm = own == stateVisible || own == stateHidden;
+  for (int i = 0; i < 2; ++i) {
+    ivec2 side = i != 0 ? ivec2(1, 0) : ivec2(0, 1);
+    uint before = texelFetch(faceKey, clamp(at - side, ivec2(0), last), 0).r;
+    uint after = texelFetch(faceKey, clamp(at + side, ivec2(0), last), 0).r;
+    isCalm = isCalm && (before == key || (before >> 2) != mine) && (after == key || (after >> 2) != mine);
   }
-  if (isCalm && own != stateUnknown) return own;
-  uvec4 votes = votesAround(at, mine, 1);
-  if (own == stateVisible && votes.x > 2u) return own;
-  if (own == stateHidden && votes.y + votes.w > 3u) return own;
-  votes += votesAround(at, mine, 3) + votesAround(at, mine, 5);
+  bool isOpen = !isCalm && key != 0u && frame.scan.x > 0.5;
+  uvec4 votes = votesAround(at, mine, 0, isOpen ? 8 : 0);
+  if (own == stateVisible && votes.x > 2u) isOpen = false;
+  if (own == stateHidden && votes.y + votes.w > 3u) isOpen = false;
+  votes += votesAround(at, mine, 8, isOpen ? 24 : 8);
   uint count = votes.x + votes.y + votes.z;
-  for (uint other = 0u; other < 3u; ++other)
-    if (2u * votes[other] > count) return other;
-  return own == barelyHidden ? stateHidden : own;
+  uint drawn = own == barelyHidden ? stateHidden : own;
+  if (isOpen && 2u * votes.x > count) drawn = stateVisible;
+  if (isOpen && 2u * votes.y > count) drawn = stateHidden;
+  if (isOpen && 2u * votes.z > count) drawn = stateUnknown;
+  return drawn;
 }
 
 vec3 overFace(vec3 under, vec4 face, uint state) {
@@ -95,9 +103,8 @@ vec3 overFace(vec3 under, vec4 face, uint state) {
 }
 
 // A face that the scan hides, over whatever is seen: so faint that the picture stays readable.
-vec3 overHidden(vec3 under, uint element, bool isThrough) {
+vec3 overHidden(vec3 under, ElementStyle style, bool isThrough) {
   if (frame.scan.z == hiddenHide) return under;
-  ElementStyle style = styles[element - 1u];
   vec3 c = style.flags.x != 0u ? selectionColour : designColour(style.colour.rgb);
   float opacity = style.flags.x != 0u ? 0.3 : 0.12;
   // Through a visible face the outline speaks; the hatch only tells which side of it is meant.
@@ -108,17 +115,22 @@ vec3 overHidden(vec3 under, uint element, bool isThrough) {
 
 // Where the hidden layer's element ends, not counting ends that the front layer makes. Of two elements
 // that meet there, the one of higher rank is outlined.
-bool isOutline(ivec2 at, uint element) {
+bool isOutline(ivec2 at, uint element, uint rank) {
   ivec2 last = ivec2(frame.lens.domain.zw) - 1;
-  for (int i = 0; i < 4; ++i) {
-    ivec2 side = (i & 1) != 0 ? ivec2(1, 0) : ivec2(0, 1);
-    ivec2 near = clamp(at + ((i & 2) != 0 ? side : -side), ivec2(0), last);
-    uint other = texelFetch(hiddenElement, near, 0).r;
-    if (other == element || stateOfKey(texelFetch(faceKey, near, 0).r) != stateVisible) continue;
-    if (texelFetch(faceElement, near, 0).r == element) continue;
-    if (other == 0u || styles[other - 1u].flags.w < styles[element - 1u].flags.w) return true;
+  bool isInside = true;
+  for (int i = element != 0u ? 0 : 4; i < 4; ++i) {
+    ivec2 side = ((i & 2) != 0 ? 1 : -1) * ivec2(i & 1, ~i & 1);
+    isInside = isInside && texelFetch(hiddenElement, clamp(at + side, ivec2(0), last), 0).r == element;
   }
-  return false;
+  bool isOutside = false;
+  for (int i = isInside ? 4 : 0; i < 4; ++i) {
+    ivec2 near = clamp(at + ((i & 2) != 0 ? 1 : -1) * ivec2(i & 1, ~i & 1), ivec2(0), last);
+    uint other = texelFetch(hiddenElement, near, 0).r;
+    bool endsHere = other == 0u || styles[max(other, 1u) - 1u].flags.w < rank;
+    endsHere = endsHere && stateOfKey(texelFetch(faceKey, near, 0).r) == stateVisible;
+    isOutside = isOutside || (endsHere && other != element && texelFetch(faceElement, near, 0).r != element);
+  }
+  return isOutside;
 }
 
 // 1 on the drawn part of an outline: cells of a chequerboard, which dash a line of any direction.
@@ -127,23 +139,20 @@ float chequer(float size) {
   return mod(cell.x + cell.y, 2.0);
 }
 
-vec3 overOutline(vec3 under, uint element) {
+vec3 overOutline(vec3 under, ElementStyle style) {
   if (frame.scan.z == hiddenHide || frame.lines.w < 0.5) return under;
-  ElementStyle style = styles[element - 1u];
   vec3 c = style.flags.x != 0u ? selectionColour : designColour(style.colour.rgb);
   return mix(under, c, frame.scan.z == hiddenDash ? 0.8 * chequer(6.0) : 0.5);
 }
 
-vec3 overEdge(vec3 under, vec2 cover, uint element) {
-  ElementStyle style = styles[element - 1u];
+vec3 overEdge(vec3 under, vec2 cover, ElementStyle style) {
   bool selected = style.flags.x != 0u;
   vec3 line = selected ? selectionColour : designColour(0.42 * style.colour.rgb);
   vec3 c = mix(under, vec3(selected ? 1.0 : 0.93), cover.y);
   return mix(c, line, cover.x);
 }
 
-vec3 overHiddenEdge(vec3 under, vec2 cover, uint element) {
-  ElementStyle style = styles[element - 1u];
+vec3 overHiddenEdge(vec3 under, vec2 cover, ElementStyle style) {
   bool selected = style.flags.x != 0u;
   vec3 line = selected ? selectionColour : designColour(mix(style.colour.rgb, vec3(1.0), 0.3));
   vec3 c = mix(under, vec3(0.1), cover.y);
@@ -160,21 +169,25 @@ void main() {
     element = texelFetch(faceElement, at, 0).r;
     state = stateOfKey(key);
     if (frame.view.y > 0.5) {
-      uint drawn = frame.scan.x > 0.5 ? drawnState(at, key) : state;
+      uint drawn = drawnState(at, key);
       uint behind = drawn == stateHidden ? element : 0u;
       if (drawn != stateHidden) colour = overFace(colour, texelFetch(faceColour, at, 0), drawn);
       bool isThrough = frame.hidden.x > 0.5 && state == stateVisible;
       if (isThrough) behind = texelFetch(hiddenElement, at, 0).r;
-      if (behind != 0u) colour = overHidden(colour, behind, isThrough);
-      if (isThrough && behind != 0u && isOutline(at, behind)) colour = overOutline(colour, behind);
+      for (int i = behind != 0u ? 0 : 1; i < 1; ++i) {
+        ElementStyle style = styles[behind - 1u];
+        colour = overHidden(colour, style, isThrough);
+        if (isOutline(at, isThrough ? behind : 0u, style.flags.w)) colour = overOutline(colour, style);
+      }
     }
   }
   vec4 cover = frame.lines.w > 0.5 ? texelFetch(edgeCover, at, 0) : vec4(0.0);
-  if (cover.y > 0.0 || cover.w > 0.0) {
+  for (int i = cover.y > 0.0 || cover.w > 0.0 ? 0 : 1; i < 1; ++i) {
     uint owner = texelFetch(edgeElement, at, 0).r;
-    if (cover.w > 0.0) colour = overHiddenEdge(colour, cover.zw, owner);
-    if (cover.y > 0.0) colour = overEdge(colour, cover.xy, owner);
-    if (element == 0u && styles[owner - 1u].flags.y != 0u) {
+    ElementStyle style = styles[owner - 1u];
+    if (cover.w > 0.0) colour = overHiddenEdge(colour, cover.zw, style);
+    if (cover.y > 0.0) colour = overEdge(colour, cover.xy, style);
+    if (element == 0u && style.flags.y != 0u) {
       element = owner;
       depth = texelFetch(edgeDepth, at, 0).r;
       state = stateOf(depth, texelFetch(scanDepth, at, 0).r);
