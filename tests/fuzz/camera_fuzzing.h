@@ -26,7 +26,8 @@ inline void checkCameraSet(const Result<CameraSet>& set, std::size_t inputSize) 
     if (!std::isfinite(picture.timeSecs)) std::abort();
   }
   for (const TiePoint& point : set->tiePoints) {
-    if (!std::isfinite(point.world.x) || !std::isfinite(point.world.y) || !std::isfinite(point.world.z)) std::abort();
+    for (int a = 0; a < 3; ++a)
+      if (!std::isfinite(point.world[a])) std::abort();
     for (const auto& [picture, pixel] : point.seenIn) {
       if (picture < 0 || picture >= static_cast<int>(set->pictures.size())) std::abort();
       if (!std::isfinite(pixel.x) || !std::isfinite(pixel.y)) std::abort();
