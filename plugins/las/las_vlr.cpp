@@ -147,7 +147,8 @@ Result<void> takeRecord(const InputFile& file, const std::string& userId, int re
   if (wkt) records.wkt = wktOf(payload);
   if (geoKeys) {
     records.geoKeys.resize(payload.size() / 2);
-    std::memcpy(records.geoKeys.data(), payload.data(), records.geoKeys.size() * 2);
+    // An empty vector's data() may be null, which memcpy never takes.
+    if (!records.geoKeys.empty()) std::memcpy(records.geoKeys.data(), payload.data(), records.geoKeys.size() * 2);
   }
   if (extra && header.extras.empty()) readExtraBytes(payload, header);
   return {};

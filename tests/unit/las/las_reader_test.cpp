@@ -198,6 +198,15 @@ TEST(LasReader, TheWktBitDecidesBetweenTwoCoordinateSystems) {
   }
 }
 
+TEST(LasReader, EmptyCoordinateSystemRecordsAreNone) {
+  LasFileMaker file(2, 0, 20);
+  for (const std::uint16_t id : {34735, 2112}) file.addVlr("LASF_Projection", id, {});
+  file.addPoint(1, 2, 3);
+  const auto info = LasReader().inspect(file.write("empty_records.las"));
+  ASSERT_TRUE(info.has_value()) << info.error().text();
+  EXPECT_EQ(info->crs, "");
+}
+
 TEST(LasReader, AGeographicSystemAndFeetAreReadAndWarnedOf) {
   LasFileMaker degrees(2, 0, 20);
   degrees.addVlr("LASF_Projection", 34735, LasFileMaker::geoKeys({{2048, 4326}}));
