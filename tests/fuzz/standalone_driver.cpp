@@ -3,7 +3,7 @@
 
 // Stands in for libFuzzer where the compiler has none. It follows no coverage: it takes a file of the
 // corpus and damages it in the ways that break readers. The same seed gives the same inputs; on a
-// crash the input is in alidade_fuzz_input in the working folder.
+// crash, a sanitizer's finding included, the input is in alidade_fuzz_input in the working folder.
 
 #include <algorithm>
 #include <chrono>
@@ -24,6 +24,10 @@
 #include <unistd.h>
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);
+
+// The sanitizers ask for these. By default they end the process without a signal, and the input is lost.
+extern "C" const char* __asan_default_options() { return "abort_on_error=1"; }
+extern "C" const char* __ubsan_default_options() { return "abort_on_error=1:print_stacktrace=1"; }
 
 namespace {
 
