@@ -11,6 +11,8 @@
 // EdgeVertex of overlay/draw_list.h, five words: position, element, metres along.
 layout(std430, set = 0, binding = 2) readonly buffer EdgeBlock { uint words[]; };
 
+layout(constant_id = 0) const uint isBehindLayer = 0u;
+
 layout(location = 0) noperspective out float outAcross;
 layout(location = 1) out float outAlong;
 layout(location = 2) out float outDepth;
@@ -37,8 +39,13 @@ void main() {
   float reach = frame.lines.y + 0.5;
   outSideways = vec2(-towards.y, towards.x);
   gl_Position = clipPosition((end == 0u ? pixelA : pixelB) + side * reach * outSideways, p.z);
-  // The depth test only spares the work for what is well behind; isBehindFaces() in the fragment is exact.
+  // The depth test only spares the work for what is well behind; the fragment judges exactly.
   gl_Position.z *= 1.06;
+  // The hidden layer's depth has the element's rank before it, see hidden_surface.vert.
+  if (isBehindLayer != 0u) {
+    float rank = float(styles[words[5u * vertex + 3u] - 1u].flags.w);
+    gl_Position.z = (gl_Position.z + rank * gl_Position.w) / 64.0;
+  }
   outAcross = side * reach;
   outAlong = uintBitsToFloat(words[5u * vertex + 4u]);
   outDepth = p.z;

@@ -178,7 +178,6 @@ Result<void> VulkanOverlayDevice::makePipelines() {
   edge.constants = {0};
   GpuGraphicsDescription edgeBehind = edge, edgeWithDepth = edge;
   edgeBehind.constants = {1};
-  edgeBehind.depthTest = false;  // the hidden layer's depth is no depth alone
   edgeWithDepth.targets.push_back({GpuFormat::R32Float});
 
   GpuGraphicsDescription composite;
@@ -343,7 +342,7 @@ void VulkanOverlayDevice::recordEdges(GpuCommands& commands, const DrawList& lis
   const auto count = static_cast<std::uint32_t>(list.edges.size() * 3);
   const bool drawsBehind = drawsHiddenLayer(list) && list.display.hidden != HiddenStyle::Hide;
   if (drawsBehind) {
-    commands.beginPass({{m_edgeCover.cleared(), m_edgeElement.overwritten()}, {}});
+    commands.beginPass({{m_edgeCover.cleared(), m_edgeElement.overwritten()}, m_hiddenDepthBuffer.kept()});
     commands.bind(m_edgeBehind, m_edgeBindings);
     commands.bindIndices(m_edgeIndices.buffer);
     commands.drawIndexed(count);
