@@ -51,15 +51,17 @@ class FrontSurfaces {
     constexpr int size = 1 << kFinest;
     Image<Moments> moments(cells(m_width, kFinest), cells(m_height, kFinest));
     parallelFor(static_cast<std::size_t>(moments.height()), 8, [&](std::size_t first, std::size_t last, int) {
-      for (int y = static_cast<int>(first) * size; y < std::min(m_height, static_cast<int>(last) * size); ++y) {
+      for (int y = static_cast<int>(first) * size; y < std::min(m_height, static_cast<int>(last) * size);
+           ++y) {
         for (int x = 0; x < m_width; ++x) {
           const float w = m_dots.inverseDepth.at(x, y);
           if (w <= 0.0f) continue;
           const float spacing = m_dots.spacingPx.at(x, y);
           const PlaceInPixel in(m_dots.place.at(x, y));
           moments.at(x >> kFinest, y >> kFinest)
-              .addDot((x & (size - 1)) - 0.5f * (size - 1) + in.u, (y & (size - 1)) - 0.5f * (size - 1) + in.v,
-                      w, spacing > 1.0f ? std::log2(spacing) + 1.0f : 1.0f);
+              .addDot((x & (size - 1)) - 0.5f * (size - 1) + in.u,
+                      (y & (size - 1)) - 0.5f * (size - 1) + in.v, w,
+                      spacing > 1.0f ? std::log2(spacing) + 1.0f : 1.0f);
         }
       }
     });
@@ -88,7 +90,7 @@ class FrontSurfaces {
     const float level = all.level / all.n;
     if (static_cast<float>(k) < level - kFiner || static_cast<float>(k) > level + kCoarser) return;
     const Plane whole = fit(all);
-    const float tight = surfaceTightness(all.w / all.n);
+    const float tight = surfaceTightness(all.w / all.n, whole);
     if (whole.w0 > 0.0f && whole.variance <= tight * tight) return;
     peeler.gather(m_dots, k, cx, cy);
     if (peeler.findSurface() && peeler.occupiedCells() >= kLeastCells) hideBehind(peeler, k, cx, cy);
@@ -103,7 +105,7 @@ class FrontSurfaces {
         if (dot <= 0.0f) continue;
         const float inX = static_cast<float>(x - x0) - middle, inY = static_cast<float>(y - y0) - middle;
         const float plane = front.at(inX, inY);
-        if (dot >= plane - kBehindSurface * surfaceTightness(plane)) continue;
+        if (dot >= plane - kBehindSurface * surfaceTightness(plane, front.plane())) continue;
         if (front.encloses(inX, inY)) m_hidden.at(x, y) = 1;
       }
     }

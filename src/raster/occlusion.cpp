@@ -16,7 +16,8 @@ namespace alidade {
 
 namespace {
 
-/// Spacing times focal length as the payload carries it: log2 in steps of 2^-13, above the place in the pixel.
+/// Spacing times focal length as the payload carries it: log2 in steps of 2^-13, above the place in the
+/// pixel.
 std::uint32_t spacingCode(double pixelMeters) {
   const double code = std::round((std::log2(std::max(pixelMeters, 1e-9)) + 32.0) * 8192.0);
   return static_cast<std::uint32_t>(std::clamp(code, 0.0, 1048575.0)) << PlaceInPixel::kBits;

@@ -32,10 +32,10 @@ struct SplatView {
 
 /// What is kept beside the depth in a 64-bit pixel.
 enum class SplatPayload {
-  None,      ///< 32-bit pixels: depth alone
-  Index,     ///< payloadBase + the point's place in the run
-  Colour,    ///< the point's RGB565
-  Place,     ///< payloadBase + where in the pixel the point fell, as PlaceInPixel reads it
+  None,    ///< 32-bit pixels: depth alone
+  Index,   ///< payloadBase + the point's place in the run
+  Colour,  ///< the point's RGB565
+  Place,   ///< payloadBase + where in the pixel the point fell, as PlaceInPixel reads it
 };
 
 /// Pixels from a pixel's centre to the point that SplatPayload::Place tells of: 6 bits each of u and v.

@@ -126,8 +126,8 @@ ALIDADE_LENS_INLINE void drawPixels(const SplatView& view, const Projected& p, c
     if (target.payload == SplatPayload::Place) {
       const Floats inU = inside ? u - __builtin_convertvector(column, Floats) : zero;
       const Floats inV = inside ? v - __builtin_convertvector(row, Floats) : zero;
-      const Ints code = __builtin_convertvector(64.0f * inU, Ints) * 64 +
-                        __builtin_convertvector(64.0f * inV, Ints);
+      const Ints code =
+          __builtin_convertvector(64.0f * inU, Ints) * 64 + __builtin_convertvector(64.0f * inV, Ints);
       words += reinterpret_cast<const Words&>(code);
     }
     std::memcpy(payload, &words, sizeof words);

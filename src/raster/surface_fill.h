@@ -14,9 +14,9 @@ struct DotImage {
   DotImage(int width, int height)
       : inverseDepth(width, height), spacingPx(width, height), place(width, height) {}
 
-  Image<float> inverseDepth;    ///< 1/metres; 0 where nothing is known
-  Image<float> spacingPx;       ///< pixels between neighbours on the dot's surface
-  Image<std::uint16_t> place;   ///< where in its pixel the dot lies, as PlaceInPixel reads it
+  Image<float> inverseDepth;   ///< 1/metres; 0 where nothing is known
+  Image<float> spacingPx;      ///< pixels between neighbours on the dot's surface
+  Image<std::uint16_t> place;  ///< where in its pixel the dot lies, as PlaceInPixel reads it
 };
 
 /// Blanks dots that shine through a nearer surface.
@@ -28,14 +28,17 @@ struct DotImage {
 /// hidden-point operators of Katz 2007 and Pintus 2011).
 void removeHiddenDots(DotImage& dots);
 
-/// Blanks dots behind a surface that its own dots show only together: the block of cells around a cell is peeled,
-/// whatever lies behind the mean plane dropped again and again, until a tight plane is left.
+/// Blanks dots behind a surface that its own dots show only together: the block of cells around a cell is
+/// peeled, whatever lies behind the mean plane dropped again and again, until a tight plane is left.
 void peelToFront(DotImage& dots);
 
 /// Fills between dots from fine cells to coarse ones: a plane in inverse depth is fitted to the dots of 3×3
 /// cells, or of a quarter of them where an edge spoils the whole; a pixel is filled where the fit
 /// is tight and dots lie around it. Cells coarser than the dots' own spacing asks for fill nothing: a
-/// hole in a dense surface stays a hole. The dots themselves are kept.
+/// hole in a dense surface stays a hole. What is left near edges is filled by the surfaces of its block one
+/// by one, nearest first, where a surface's own dots lie in every quadrant about the pixel and the nearest of
+/// all dots is the surface's. Dots are moved from where they lie in their pixels to the centre along the
+/// plane; where a fit is as tight as the scan's noise, its plane takes the place of the dots.
 void fillBetweenDots(DotImage& dots);
 
 }  // namespace alidade
