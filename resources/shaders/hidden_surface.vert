@@ -3,7 +3,8 @@
 // SPDX-License-Identifier: BSD-3-Clause
 //
 // Design faces for the hidden layer: bends each vertex; drops what a closed solid shows from its inside.
-// Depth is the element's rank first and the distance within a rank: what is small shows through what is large.
+// Depth is the element's rank first and the distance within a rank: what is small shows through what is
+// large.
 
 #extension GL_GOOGLE_include_directive : require
 #include "overlay_frame.glsl"

@@ -22,7 +22,8 @@ layout(std140, set = 0, binding = 0) uniform FrameBlock {
 
 struct ElementStyle {
   vec4 colour;     // a: opacity
-  uvec4 flags;     // 1: selected, 1: has edges alone, winding (0 open, 1 normals outwards, 2 inwards), hidden rank
+  // 1: selected, 1: has edges alone, winding (0 open, 1 normals outwards, 2 inwards), hidden rank
+  uvec4 flags;
 };
 
 layout(std430, set = 0, binding = 1) readonly buffer StyleBlock { ElementStyle styles[]; };
@@ -53,7 +54,8 @@ const uint barelyHidden = 3u;
 
 uint keyOf(uint element, float z, float scanDepth) {
   uint state = stateOf(z, scanDepth);
-  if (state == stateHidden && stateOf(z - 2.0 * frame.scan.y, scanDepth) == stateVisible) state = barelyHidden;
+  bool isBarely = stateOf(z - 2.0 * frame.scan.y, scanDepth) == stateVisible;
+  if (state == stateHidden && isBarely) state = barelyHidden;
   return state | ((1u + element % 63u) << 2);
 }
 uint stateOfKey(uint key) {

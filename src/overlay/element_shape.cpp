@@ -74,7 +74,8 @@ std::shared_ptr<const std::vector<ElementShape>> shapesOf(const std::shared_ptr<
   if (!model) return std::make_shared<std::vector<ElementShape>>();
   {
     const std::lock_guard lock(mutex);
-    if (const auto found = known.find(model.get()); found != known.end() && found->second.model.lock() == model)
+    if (const auto found = known.find(model.get());
+        found != known.end() && found->second.model.lock() == model)
       return found->second.shapes;
   }
   auto shapes = std::make_shared<std::vector<ElementShape>>(model->elements.size());

@@ -69,8 +69,9 @@ struct ElementPixels {
 /// Two layers of the design are drawn. The front layer is the design surface nearest to the camera, be it
 /// visible, hidden or unknown; the images below speak of it alone. The hidden layer lies behind where the
 /// front layer is visible: a face of another element (no back faces of closed solids), hidden by that
-/// surface or by the scan, and drawn through it as HiddenStyle asks. Of several the smallest element is shown,
-/// so that a pipe is seen through the pavement and the bed that it lies in. No scan, no hidden layer.
+/// surface or by the scan, and drawn through it as HiddenStyle asks. Of several the smallest element is
+/// shown, so that a pipe is seen through the pavement and the bed that it lies in. No scan, no hidden layer.
+/// How a pixel looks may differ from its `state`: specks are drawn as what is around them.
 struct OverlayPicture {
   ColourImage colour;
   DepthImage scanDepth;    ///< occlusion depth: +inf or NaN as in raster/occlusion.h

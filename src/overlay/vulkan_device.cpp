@@ -208,10 +208,9 @@ Result<void> VulkanOverlayDevice::ensureTargets(const DrawList& list) {
   const int w = list.width, h = list.height;
   if (!m_colour.image || m_colour.image.width() != w || m_colour.image.height() != h) {
     m_bindingsStale = true;
-    for (Target* target :
-         {&m_faceColour, &m_faceElement, &m_faceDepth, &m_faceKey, &m_depthBuffer, &m_hiddenElement,
-          &m_hiddenDepth, &m_hiddenDepthBuffer, &m_edgeCover, &m_edgeElement, &m_edgeDepth, &m_element,
-          &m_depth, &m_state, &m_colour})
+    for (Target* target : {&m_faceColour, &m_faceElement, &m_faceDepth, &m_faceKey, &m_depthBuffer,
+                           &m_hiddenElement, &m_hiddenDepth, &m_hiddenDepthBuffer, &m_edgeCover,
+                           &m_edgeElement, &m_edgeDepth, &m_element, &m_depth, &m_state, &m_colour})
       if (auto made = target->make(*m_device, w, h); !made) return made;
   }
   const bool hasImage = list.image && !list.image->empty();
@@ -253,7 +252,9 @@ Result<void> VulkanOverlayDevice::uploadLists(const DrawList& list) {
   };
   std::vector<StyleUniform> styles;
   for (const ElementStyle& style : list.styles)
-    styles.push_back({style.colour, {style.selected, style.edgesAlone, static_cast<std::uint32_t>(style.winding), style.hiddenRank}});
+    styles.push_back(
+        {style.colour,
+         {style.selected, style.edgesAlone, static_cast<std::uint32_t>(style.winding), style.hiddenRank}});
   const FrameUniform uniform = frameUniform(list);
   if (auto ok = put(m_uniform, &uniform, sizeof uniform, true); !ok) return ok;
   if (auto ok = put(m_styles, styles.data(), styles.size() * sizeof(StyleUniform), true); !ok) return ok;
@@ -361,8 +362,7 @@ void VulkanOverlayDevice::recordEdges(GpuCommands& commands, const DrawList& lis
 }
 
 void VulkanOverlayDevice::recordComposite(GpuCommands& commands, const DrawList& list) {
-  for (const Target* target : {&m_edgeCover, &m_edgeElement, &m_edgeDepth})
-    commands.toSampled(target->image);
+  for (const Target* target : {&m_edgeCover, &m_edgeElement, &m_edgeDepth}) commands.toSampled(target->image);
   commands.beginPass(
       {{m_colour.overwritten(), m_element.overwritten(), m_depth.overwritten(), m_state.overwritten()}, {}});
   commands.bind(m_composite, m_compositeBindings);

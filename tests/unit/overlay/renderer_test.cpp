@@ -248,7 +248,8 @@ TEST_F(DeviceTest, WhatLiesBuriedShowsThroughTheVisibleFaceAndTheSmallestShowsFi
       ASSERT_EQ(out.state.at(x, y), static_cast<std::uint8_t>(Visibility::Visible));
       ASSERT_NEAR(out.designDepth.at(x, y), 10, 1e-4) << "the images speak of the front layer";
       const glm::dvec3 ray = *frame.camera.unproject({x, y});
-      const bool meetsBox = hits(ray, {0.5, 0, 12}, {1.5, 0.5, 0.5}), meetsBed = hits(ray, {0, 0, 12}, {5, 3, 3});
+      const bool meetsBox = hits(ray, {0.5, 0, 12}, {1.5, 0.5, 0.5}),
+                 meetsBed = hits(ray, {0, 0, 12}, {5, 3, 3});
       const std::uint32_t expected = meetsBox ? 3 : meetsBed ? 2 : 0;
       wrong += out.hiddenElement.at(x, y) != expected;
       ++(meetsBox ? buried : meetsBed ? bed : bare);
@@ -259,7 +260,8 @@ TEST_F(DeviceTest, WhatLiesBuriedShowsThroughTheVisibleFaceAndTheSmallestShowsFi
   EXPECT_LE(wrong, 40) << "a silhouette pixel may fall to either side";
   EXPECT_GT(differingPixels(pictures[0], pictures[1], 4), 8000u) << "a ghost over the whole bed";
   EXPECT_GT(differingPixels(pictures[1], pictures[2], 4), 3000u);
-  const Rgba8 hide = pictures[0].at(kWidth / 2 + 20, kHeight / 2), ghost = pictures[1].at(kWidth / 2 + 20, kHeight / 2);
+  const Rgba8 hide = pictures[0].at(kWidth / 2 + 20, kHeight / 2),
+              ghost = pictures[1].at(kWidth / 2 + 20, kHeight / 2);
   EXPECT_LT(ghost.r, hide.r) << "tinted by the cyan box";
   EXPECT_LT(std::abs(ghost.r - hide.r), 60) << "and still readable";
 }
