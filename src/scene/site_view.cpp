@@ -75,6 +75,16 @@ struct SiteView::Impl {
     return all;
   }
 
+  /// What the work is about. A scan reaches far beyond it (a few returns from the next street shrink
+  /// the site to a speck), so it counts only where there is no design.
+  Bounds workBounds() const {
+    Bounds work = designs.bounds();
+    if (work.empty()) return allBounds();
+    work.add(stakes.bounds());
+    work.add(frames.bounds());
+    return work;
+  }
+
   void buildClouds() { clouds.build(origin, density, pointBudget()); }
   void buildFrames() {
     const Bounds site = siteBounds();
@@ -95,8 +105,9 @@ struct SiteView::Impl {
     }
     buildFrames();
     if (!touched && !added.empty()) {
-      camera.fit(all);
-      pivot = all.centre();
+      const Bounds work = workBounds();
+      camera.fit(work);
+      pivot = work.centre();
     }
   }
 
@@ -239,7 +250,7 @@ void SiteView::setMoving(bool moving) {
 }
 
 void SiteView::fitAll() {
-  fitTo(m_impl->allBounds());
+  fitTo(m_impl->workBounds());
 }
 
 void SiteView::fitTo(const Bounds& world) {

@@ -90,6 +90,7 @@ class SiteView {
   /// While true a coarse tenth of the points is drawn, so that dragging stays fluid. Set it false
   /// when the mouse is released and paint again.
   void setMoving(bool moving);
+  /// Shows what the work is about: design, stake-out points and cameras; the scan where there is no design.
   void fitAll();
   void fitTo(const Bounds& world);
   void lookFromFrame(FrameId frame);
