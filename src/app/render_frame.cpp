@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -38,13 +39,12 @@ const char* hiddenStyleName(HiddenStyle style) {
   return "";
 }
 
+/// Shares of the front-most design, pixel by pixel; what is buried behind it counts with its element only.
 std::string drawnText(const OverlayPicture& picture, const DisplaySettings& display) {
-  std::uint64_t visible = 0, hidden = 0, unknown = 0;
-  for (const ElementPixels& element : picture.elements) {
-    visible += element.visible;
-    hidden += element.hidden;
-    unknown += element.unknown;
-  }
+  std::array<std::uint64_t, 4> pixels{};
+  for (std::size_t i = 0; i < picture.state.size(); ++i) ++pixels[picture.state.data()[i] & 3];
+  const auto visible = pixels[static_cast<int>(Visibility::Visible)], hidden = pixels[static_cast<int>(Visibility::Hidden)],
+             unknown = pixels[static_cast<int>(Visibility::Unknown)];
   const double all = static_cast<double>(visible + hidden + unknown);
   if (!display.designPass) return "design switched off";
   if (all == 0) return "no design in this picture";
