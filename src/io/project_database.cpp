@@ -8,6 +8,9 @@
 
 #include <QCoreApplication>
 
+#include <fcntl.h>
+#include <unistd.h>
+
 namespace alidade {
 
 namespace {
@@ -21,6 +24,27 @@ std::string adviceFor(const QString& code) {
   if (primary == 5 || primary == 6) return "Another program holds the file: close it there";
   return "Check that the folder can be read and written";
 }
+
+/// A name for Qt. Its strings cannot hold a path that is not UTF-8 and would name another file;
+/// SQLite itself follows the descriptor's link to the very bytes.
+class DatabaseName {
+ public:
+  explicit DatabaseName(const std::string& path) : m_name(QString::fromUtf8(path.data(), qsizetype(path.size()))) {
+    if (m_name.toStdString() == path) return;
+    m_descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    m_name = QString("/proc/self/fd/%1").arg(m_descriptor);
+  }
+  ~DatabaseName() {
+    if (m_descriptor >= 0) ::close(m_descriptor);
+  }
+  DatabaseName(const DatabaseName&) = delete;
+  DatabaseName& operator=(const DatabaseName&) = delete;
+  const QString& name() const { return m_name; }
+
+ private:
+  QString m_name;
+  int m_descriptor = -1;
+};
 
 }  // namespace
 
@@ -36,7 +60,8 @@ Result<ProjectDatabase> ProjectDatabase::open(const std::string& path, Mode mode
   database.m_connection = QString("alidade-project-%1").arg(++count);
   database.m_path = path;
   QSqlDatabase connection = QSqlDatabase::addDatabase("QSQLITE", database.m_connection);
-  connection.setDatabaseName(QString::fromLocal8Bit(path.c_str()));
+  const DatabaseName name(path);
+  connection.setDatabaseName(name.name());
   connection.setConnectOptions(mode == Mode::Read ? "QSQLITE_OPEN_READONLY;QSQLITE_BUSY_TIMEOUT=2000"
                                                   : "QSQLITE_BUSY_TIMEOUT=2000");
   if (!connection.open())

@@ -20,6 +20,7 @@
 #include <unistd.h>
 
 #include "base/log.h"
+#include "io/known_formats.h"
 #include "plugin_api/reader_plugin.h"
 #include "plugin_api/text_file.h"
 
@@ -107,6 +108,11 @@ tl::unexpected<Error> refuseEmpty(const FileProbe& probe) {
   return fail("The file is empty", probe.path, "Copy or export it again");
 }
 
+tl::unexpected<Error> refuseWithoutPlugins(const std::string& path) {
+  return fail("No reader plugin is installed, so no file can be read", path,
+              "Install Alidade whole, or set ALIDADE_PLUGIN_PATH to the plugins' folder");
+}
+
 bool isEmpty(const FileProbe& probe) {
   std::error_code error;
   return probe.isFolder ? fs::is_empty(probe.path, error) : probe.head.empty();
@@ -165,10 +171,11 @@ Result<const Reader*> ReaderRegistry::find(const std::string& path) const {
   const auto probe = probeFile(path, head);
   if (!probe) return fail(probe.error());
   if (isEmpty(*probe)) return refuseEmpty(*probe);
+  if (m_readers.empty()) return refuseWithoutPlugins(path);
   if (const Claim best = bestClaim(m_readers, *probe, std::nullopt); best.reader) return best.reader;
+  if (auto known = refusalOfKnownFormat(*probe)) return fail(std::move(*known));
   return fail(probe->isFolder ? "Nothing in the folder is of a kind that is read" : "No reader knows the file's format",
-              path, m_readers.empty() ? "No reader plugin is installed: set ALIDADE_PLUGIN_PATH to their folder"
-                                      : "Formats read: " + formatList(m_readers, std::nullopt));
+              path, "Formats read: " + formatList(m_readers, std::nullopt));
 }
 
 Result<const Reader*> ReaderRegistry::findKind(const std::string& path, ReaderKind kind) const {
@@ -176,6 +183,7 @@ Result<const Reader*> ReaderRegistry::findKind(const std::string& path, ReaderKi
   const auto probe = probeFile(path, head);
   if (!probe) return fail(probe.error());
   if (isEmpty(*probe)) return refuseEmpty(*probe);
+  if (m_readers.empty()) return refuseWithoutPlugins(path);
   if (const Claim best = bestClaim(m_readers, *probe, kind); best.reader) return best.reader;
 
   const std::string formats = formatList(m_readers, kind);
@@ -184,6 +192,7 @@ Result<const Reader*> ReaderRegistry::findKind(const std::string& path, ReaderKi
   if (const Claim other = bestClaim(m_readers, *probe, std::nullopt); other.reader)
     return fail("This is " + std::string(kindWords(other.reader->kind())) + " (" + other.reader->description().name +
                     "), not " + std::string(kindWords(kind)), path, advice);
+  if (auto known = refusalOfKnownFormat(*probe)) return fail(std::move(*known));
   return fail(probe->isFolder ? "Nothing in the folder can be read as " + std::string(kindWords(kind))
                               : "No reader of " + std::string(kindWords(kind)) + " knows the file's format",
               path, advice);

@@ -74,6 +74,10 @@ std::vector<SourceProblem> checkSources(const Project& project) {
     if (source.path.empty() || !checked.insert(source.path).second) return;
     std::error_code error;
     const auto status = fs::status(source.path, error);
+    if (error && status.type() != fs::file_type::not_found) {
+      problems.push_back({source.path, "cannot be reached: " + error.message()});
+      return;
+    }
     if (!fs::exists(status)) {
       problems.push_back({source.path, "is missing"});
       return;

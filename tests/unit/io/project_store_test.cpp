@@ -267,6 +267,18 @@ TEST(ProjectStore, AFullDiskLeavesTheOldProjectWhole) {
   EXPECT_EQ(folder.count(), 1u) << "the unfinished file is gone";
 }
 
+TEST(ProjectStore, KeepsAProjectWhosePathIsNotUtf8) {
+  const TestFolder folder;
+  const std::string path = folder / "Stra\xdf" "e.alidade";
+  Project project;
+  project.name = "Latin-1";
+  ASSERT_TRUE(saveProject(project, path));
+  const auto loaded = loadProject(path);
+  ASSERT_TRUE(loaded) << loaded.error().text();
+  EXPECT_EQ(loaded->name, "Latin-1");
+  EXPECT_EQ(folder.count(), 1u) << "nothing beside it under another name";
+}
+
 TEST(ProjectStore, RefusesAFolderThatIsNotThere) {
   const TestFolder folder;
   const auto saved = saveProject(Project(), folder / "no/such/p.alidade");
