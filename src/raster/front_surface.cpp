@@ -17,6 +17,8 @@ constexpr int kFinest = 2, kCoarsest = 5;  ///< cells of 4 to 32 pixels
 /// How far a cell's level may lie from that of its dots' own spacing.
 constexpr float kFiner = 0.5f, kCoarser = 2.5f;
 constexpr float kLeastDots = 7;
+constexpr float kBimodal =
+    4.0f;  ///< variance of a block, in that of a tight surface, above which it holds two
 /// A surface hides only where it covers the block: poles in a row are no wall.
 constexpr int kLeastCells = 8;
 
@@ -91,7 +93,7 @@ class FrontSurfaces {
     if (static_cast<float>(k) < level - kFiner || static_cast<float>(k) > level + kCoarser) return;
     const Plane whole = fit(all);
     const float tight = surfaceTightness(all.w / all.n, whole);
-    if (whole.w0 > 0.0f && whole.variance <= tight * tight) return;
+    if (whole.w0 > 0.0f && whole.variance <= kBimodal * tight * tight) return;
     peeler.gather(m_dots, k, cx, cy);
     if (peeler.findSurface() && peeler.occupiedCells() >= kLeastCells) hideBehind(peeler, k, cx, cy);
   }

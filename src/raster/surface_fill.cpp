@@ -158,27 +158,27 @@ class Filler {
   }
 
   void fillCell(const MomentImage& moments, int k, int cx, int cy, bool smooth) {
-    std::array<std::array<Moments, 3>, 3> cell;
     float n = 0, level = 0;
-    for (int j = 0; j < 3; ++j) {
-      for (int i = 0; i < 3; ++i) {
-        cell[j][i] = cellAt(moments, cx + i - 1, cy + j - 1);
-        n += cell[j][i].n;
-        level += cell[j][i].level;
+    for (int y = cy - 1; y <= cy + 1; ++y) {
+      for (int x = cx - 1; x <= cx + 1; ++x) {
+        if (!moments.contains(x, y)) continue;
+        n += moments.at(x, y).n;
+        level += moments.at(x, y).level;
       }
     }
-    if (n < 4 || level / n + kLevelSlack < static_cast<float>(k)) return;
+    if (n < (smooth ? kSmoothDots : 4.0f) || level / n + kLevelSlack < static_cast<float>(k)) return;
     // Dots on all four sides, or the picture's border: a silhouette is not guessed outwards.
-    const auto holds = [&](int i, int j) {
-      return cell[1 + j][1 + i].n > 0 || !moments.contains(cx + i, cy + j);
-    };
-    const bool enclosed = holds(-1, 0) && holds(1, 0) && holds(0, -1) && holds(0, 1);
-    if (!enclosed) return;
+    const auto holds = [&](int x, int y) { return !moments.contains(x, y) || moments.at(x, y).n > 0; };
+    if (!holds(cx - 1, cy) || !holds(cx + 1, cy) || !holds(cx, cy - 1) || !holds(cx, cy + 1)) return;
     if (!hasGap(k, cx, cy)) return;
+    std::array<std::array<Moments, 3>, 3> cell;
+    for (int j = 0; j < 3; ++j) {
+      for (int i = 0; i < 3; ++i) cell[j][i] = cellAt(moments, cx + i - 1, cy + j - 1);
+    }
     const auto size = static_cast<float>(1 << k);
     if (smooth) {
       const Plane plane = wholePlane(cell, size);
-      if (n >= kSmoothDots && plane.good && isTight(plane))
+      if (plane.good && isTight(plane))
         fillPixels(
             k, cx, cy, [&](float, float) { return plane; }, true);
       return;
