@@ -31,6 +31,8 @@ int openDescriptors() {
 
 int main(int argc, char** argv) {
   const std::string mode = argc > 1 ? argv[1] : "";
+  // A sanitizer would take the signal and make a plain exit of the crash.
+  ::signal(SIGSEGV, SIG_DFL);
   ChildReporter reporter;
   if (mode == "answer") {
     reporter.progress(0.5, "Half way there");
