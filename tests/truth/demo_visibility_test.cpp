@@ -23,7 +23,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kWidth = 640, kHeight = 480, kFrames = 5;
+constexpr int kWidth = 1280, kHeight = 960, kFrames = 3;
 
 template <class T>
 Image<T> readRaw(const fs::path& path) {
@@ -89,7 +89,7 @@ ColourImage compare(const OverlayPicture& ours, const Image<std::uint8_t>& truth
 TEST(DemoSite, VisibleAndHiddenAgreeWithTheTruthForNineteenPixelsInTwenty) {
   const fs::path folder = fs::temp_directory_path() / ("alidade_truth_" + std::to_string(getpid()));
   DemoOptions options;
-  options.points = 1'500'000;
+  options.points = 2'000'000;
   options.frames = kFrames;
   options.width = kWidth;
   options.height = kHeight;
