@@ -67,6 +67,8 @@ Reference reference(const PointStore& store, const Camera& camera, const RigidTr
   const DepthImage empty(camera.width(), camera.height(), inf);
   Reference picture{empty, empty, empty};
   const auto draw = [&](DepthImage& image, double u, double v, double z) {
+    // A point just before the camera's plane lands further out than an int counts.
+    if (!(std::abs(u) < 1e6 && std::abs(v) < 1e6)) return;
     const int x = static_cast<int>(std::floor(u + 0.5)), y = static_cast<int>(std::floor(v + 0.5));
     if (image.contains(x, y)) image.at(x, y) = std::min(image.at(x, y), static_cast<float>(z));
   };
