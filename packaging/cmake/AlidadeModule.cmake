@@ -55,6 +55,9 @@ function(alidade_test name)
   if(NOT ARG_MAIN)
     target_link_libraries(${name} PRIVATE GTest::gtest_main)
   endif()
+  if(ALIDADE_SANITIZE)
+    target_sources(${name} PRIVATE "${CMAKE_SOURCE_DIR}/tests/keep_loaded.cpp")
+  endif()
   target_compile_definitions(${name} PRIVATE
     ALIDADE_SOURCE_DIR="${CMAKE_SOURCE_DIR}"
     ALIDADE_BINARY_DIR="${CMAKE_BINARY_DIR}"
