@@ -35,6 +35,20 @@ std::int64_t nextId(const std::vector<T>& items) {
   return highest + 1;
 }
 
+/// The EPSG number of "EPSG:n" or of the outermost (so last) AUTHORITY or ID of a WKT; empty where
+/// none is stated.
+std::string epsgOf(const std::string& crs) {
+  const auto at = crs.rfind("EPSG");
+  if (at == std::string::npos) return {};
+  const auto from = crs.find_first_of("0123456789", at);
+  if (from == std::string::npos) return {};
+  return crs.substr(from, crs.find_first_not_of("0123456789", from) - from);
+}
+
+bool sameCrs(const std::string& a, const std::string& b) {
+  return a == b || (!epsgOf(a).empty() && epsgOf(a) == epsgOf(b));
+}
+
 /// Builds a project step by step; each add... inspects one input.
 class Assembler {
  public:
@@ -51,6 +65,7 @@ class Assembler {
     scan.id.value = nextId(project().scans);
     scan.name = stemOf(path);
     scan.source = std::move(*source);
+    if (isThere(project().scans, scan.source)) return {};
     scan.info = std::move(*info);
     noteCrs(scan.info.crs, path);
     project().scans.push_back(std::move(scan));
@@ -68,6 +83,7 @@ class Assembler {
     design.id.value = nextId(project().designs);
     design.name = stemOf(path);
     design.source = std::move(*source);
+    if (isThere(project().designs, design.source)) return {};
     noteCrs(info->crs, path);
     project().designs.push_back(std::move(design));
     return {};
@@ -124,6 +140,8 @@ class Assembler {
     std::stable_sort(project().frames.begin(), project().frames.end(),
                      [](const Frame& a, const Frame& b) { return a.timeSecs < b.timeSecs; });
     noteDistance();
+    if (!m_cameras.empty() && project().frames.empty())
+      m_outcome.notes.push_back("Cameras and poses are of no use without pictures: add the pictures or the video they belong to");
     return std::move(m_outcome);
   }
 
@@ -177,10 +195,18 @@ class Assembler {
     return m_nextFrame++;
   }
 
+  /// The same file twice would be drawn twice and counted twice.
+  template <class T>
+  bool isThere(const std::vector<T>& items, const SourceFile& source) {
+    if (std::none_of(items.begin(), items.end(), [&](const T& item) { return item.source.path == source.path; })) return false;
+    m_outcome.notes.push_back(source.path + " is in the project already");
+    return true;
+  }
+
   void noteCrs(const std::string& crs, const std::string& path) {
     if (crs.empty()) return;
     if (project().crs.empty()) project().crs = crs;
-    else if (project().crs != crs)
+    else if (!sameCrs(project().crs, crs))
       m_outcome.notes.push_back(path + " states another coordinate system than the project. Coordinates are used as they "
                                        "stand: check that the two agree");
   }

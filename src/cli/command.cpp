@@ -46,8 +46,13 @@ class Bar {
   Progress m_progress;
 };
 
-nlohmann::ordered_json jsonOf(const Error& error) {
-  return {{"error", {{"what", error.what}, {"where", error.where}, {"advice", error.advice}}}};
+/// Paths are bytes and JSON is UTF-8: what is not becomes the replacement character.
+std::string textOf(const nlohmann::ordered_json& json) {
+  return json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) + '\n';
+}
+
+std::string jsonOf(const Error& error) {
+  return textOf({{"error", {{"what", error.what}, {"where", error.where}, {"advice", error.advice}}}});
 }
 
 }  // namespace
@@ -64,15 +69,17 @@ int Verbs::run() const {
   for (const Entry& entry : m_entries) {
     if (!entry.command->parsed()) continue;
     std::signal(SIGINT, onInterrupt);
+    // A file size limit then is an error like a full disk, with a message and nothing left behind.
+    std::signal(SIGXFSZ, SIG_IGN);
     Bar bar;
     const auto answer = entry.run(bar.progress());
     bar.clear();
     if (!answer) {
-      if (*entry.json) std::cout << jsonOf(answer.error()).dump(2) << '\n';
+      if (*entry.json) std::cout << jsonOf(answer.error()) << std::flush;
       std::cerr << "alidade-cli: " << answer.error().text() << '\n';
       return 1;
     }
-    if (*entry.json) std::cout << answer->json.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n';
+    if (*entry.json) std::cout << textOf(answer->json);
     else std::cout << answer->text;
     std::cout.flush();
     if (!std::cout) {
@@ -82,6 +89,19 @@ int Verbs::run() const {
     return answer->failed ? 1 : 0;
   }
   return 2;
+}
+
+int Verbs::refuse(const CLI::ParseError& error, bool json) const {
+  constexpr int kBadUsage = 2;
+  std::string what = error.what();
+  std::string verb;
+  for (const Entry& entry : m_entries)
+    if (entry.command->parsed()) verb = entry.command->get_name() + " ";
+  if (const auto words = m_app.remaining(); verb.empty() && !words.empty()) what = "There is no verb '" + words.front() + "'";
+  const Error usage{what, {}, "See alidade-cli " + verb + "--help"};
+  if (json) std::cout << jsonOf(usage) << std::flush;
+  std::cerr << "alidade-cli: " << usage.text() << '\n';
+  return kBadUsage;
 }
 
 }  // namespace alidade::cli

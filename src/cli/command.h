@@ -34,6 +34,10 @@ class Verbs {
   /// Runs the parsed verb and prints its answer. Exit code 0 done, 1 failed.
   int run() const;
 
+  /// The words on the command line are wrong: says so, as JSON too where `json` asks for it.
+  /// Exit code 2.
+  int refuse(const CLI::ParseError& error, bool json) const;
+
  private:
   struct Entry {
     CLI::App* command;
@@ -43,6 +47,17 @@ class Verbs {
   CLI::App& m_app;
   std::vector<Entry> m_entries;
 };
+
+/// For CLI11's check(): the parser's refusal as bad usage, before anything is loaded.
+template <class Parse>
+CLI::Validator checkedBy(Parse parse, const std::string& name) {
+  return CLI::Validator(
+      [parse](std::string& text) {
+        const auto parsed = parse(text);
+        return parsed ? std::string() : parsed.error().what + ". " + parsed.error().advice;
+      },
+      name);
+}
 
 void addDemo(Verbs& verbs);
 void addInfo(Verbs& verbs);

@@ -131,8 +131,16 @@ Result<Description> describeProject(const std::string& path) {
   return out;
 }
 
+/// By its name, or by its first bytes: a project may have lost its ending.
+bool isProject(const std::string& path) {
+  if (path.ends_with(".alidade")) return true;
+  std::vector<std::byte> head;
+  const auto probe = probeFile(path, head);
+  return probe && probe->startsWith("SQLite format 3");
+}
+
 Result<Description> describeFile(const std::string& path) {
-  if (path.ends_with(".alidade")) return describeProject(path);
+  if (isProject(path)) return describeProject(path);
   const auto reader = ReaderRegistry::instance().find(path);
   if (!reader) return fail(reader.error());
   auto described = [&]() -> Result<Description> {

@@ -11,9 +11,23 @@
 
 namespace alidade::cli {
 
+namespace {
+
+/// Work already done in a project, and any other file, is not lost to a slip of the keyboard.
+Result<void> checkTarget(const std::string& path, bool overwrite) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return {};
+  if (!loadProject(path)) return fail("The file exists and is no Alidade project: it is not overwritten", path, "Choose another name");
+  if (!overwrite) return fail("The project exists already", path, "Choose another name, or give --overwrite to replace it");
+  return {};
+}
+
+}  // namespace
+
 void addNew(Verbs& verbs) {
   struct Arguments {
     std::string project;
+    bool overwrite = false;
     NewProjectInputs inputs;
     std::vector<std::string> files;
     std::string name;
@@ -22,6 +36,7 @@ void addNew(Verbs& verbs) {
   CLI::App* command = verbs.add(
       "new", "Make a project of scans, designs, pictures and cameras",
       [arguments](const Progress& progress) -> Result<Answer> {
+        if (auto free = checkTarget(arguments->project, arguments->overwrite); !free) return fail(free.error());
         auto made = newProject(arguments->inputs, progress);
         if (!made) return fail(made.error());
         if (!arguments->files.empty()) {
@@ -32,6 +47,8 @@ void addNew(Verbs& verbs) {
         }
         Project& project = made->project;
         project.name = arguments->name.empty() ? std::filesystem::path(arguments->project).stem().string() : arguments->name;
+        if (project.scans.empty() && project.designs.empty() && project.frames.empty())
+          made->notes.push_back("The project holds no scan, no design and no picture. Give --scan, --design, --images or --video");
         if (auto saved = saveProject(project, arguments->project); !saved) return fail(saved.error());
 
         std::size_t posed = 0;
@@ -62,6 +79,7 @@ void addNew(Verbs& verbs) {
   command->add_option("--control", arguments->inputs.controlPoints, "Control points, CSV");
   command->add_option("--files", arguments->files, "Anything of the above, told apart by content");
   command->add_option("--name", arguments->name, "Name of the project");
+  command->add_flag("--overwrite", arguments->overwrite, "Replace an existing project");
 }
 
 }  // namespace alidade::cli

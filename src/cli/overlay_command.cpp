@@ -1,6 +1,9 @@
 // SPDX-FileCopyrightText: 2026 the Alidade authors
 // SPDX-License-Identifier: BSD-3-Clause
 
+#include <cctype>
+#include <filesystem>
+
 #include <fmt/format.h>
 
 #include "app/jobs.h"
@@ -45,6 +48,31 @@ Result<std::pair<int, int>> parseSize(const std::string& size) {
   return std::pair{width, height};
 }
 
+/// Refuses before the work what would be in vain after it, and what would cost the user a file: a
+/// picture is never written over the project or one of its sources.
+Result<void> checkOutput(const std::string& output, const Project& project) {
+  namespace fs = std::filesystem;
+  std::error_code error;
+  std::string extension = fs::path(output).extension().string();
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  if (fs::is_directory(output, error)) return fail("This is a folder, not a file", output, "Give a file name");
+  if (extension != ".png" && !extension.empty())
+    return fail(fmt::format("Pictures are written as PNG, not as '{}'", extension), output, "Give a name that ends in .png");
+  const fs::path folder = fs::absolute(output, error).parent_path();
+  if (!fs::is_directory(folder, error))
+    return fail("The folder does not exist", output, "Make the folder first or choose another");
+  bool taken = fs::equivalent(output, project.path, error);
+  const auto check = [&](const SourceFile& source) {
+    taken = taken || (!source.path.empty() && fs::equivalent(output, source.path, error));
+  };
+  for (const Scan& scan : project.scans) check(scan.source);
+  for (const Design& design : project.designs) check(design.source);
+  for (const Video& video : project.videos) check(video.source);
+  for (const Frame& frame : project.frames) check(frame.image);
+  if (taken) return fail("The project needs this file: it is not overwritten", output, "Choose another name");
+  return {};
+}
+
 Json elementsJson(const RenderedFrame& rendered) {
   Json list = Json::array();
   for (const ElementPixels& pixels : rendered.picture.elements) {
@@ -57,7 +85,8 @@ Json elementsJson(const RenderedFrame& rendered) {
 }
 
 Result<Answer> run(const Arguments& arguments, const Progress& progress) {
-  auto open = openProject(arguments.project, arguments.frame, true, progress.part(0.0, 0.8));
+  const auto check = [&](const Project& project) { return checkOutput(arguments.output, project); };
+  auto open = openProject(arguments.project, arguments.frame, true, progress.part(0.0, 0.8), check);
   if (!open) return fail(open.error());
   DisplaySettings& display = open->project.display;
   if (arguments.density) display.density = *arguments.density;
@@ -107,9 +136,11 @@ void addOverlay(Verbs& verbs) {
   command->add_option("-o,--output", arguments->output, "PNG to write")->required();
   command->add_option("--density", arguments->density, "Point density, 0 to 1")->check(CLI::Range(0.0, 1.0));
   command->add_option("--point-size", arguments->pointSize, "Factor on the automatic point size")->check(CLI::Range(0.1, 20.0));
-  command->add_option("--passes", arguments->passes, "Of image,depth,design,points");
+  command->add_option("--passes", arguments->passes, "Of image,depth,design,points")
+      ->check(checkedBy([](const std::string& list) { DisplaySettings ignored; return applyPasses(list, ignored); }, "LIST"));
   command->add_option("--hidden", arguments->hidden, "Parts that the scan hides")->check(CLI::IsMember({"hide", "ghost", "dash"}));
-  command->add_option("--size", arguments->size, "WIDTHxHEIGHT; the raw picture's where not given");
+  command->add_option("--size", arguments->size, "WIDTHxHEIGHT; the raw picture's where not given")
+      ->check(checkedBy(parseSize, "SIZE"));
   command->add_flag("--bare", arguments->bare, "Without the title block");
 }
 

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "app/workspace.h"
@@ -13,12 +14,14 @@
 namespace alidade::cli {
 
 /// Opens a project and, where wanted, its scans and designs. A source that cannot be read stops a
-/// command: an unattended picture must not silently lack its design.
+/// command: an unattended picture must not silently lack its design. `check` may refuse the project
+/// before anything is loaded.
 struct OpenProject {
   Project project;
   LoadedData data;
   FrameId frame;
 };
-Result<OpenProject> openProject(const std::string& path, const std::string& frame, bool withData, const Progress& progress);
+Result<OpenProject> openProject(const std::string& path, const std::string& frame, bool withData, const Progress& progress,
+                                const std::function<Result<void>(const Project&)>& check = {});
 
 }  // namespace alidade::cli

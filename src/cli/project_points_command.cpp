@@ -2,10 +2,14 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include <charconv>
+#include <cerrno>
 #include <cmath>
-#include <iostream>
+#include <cstring>
+#include <sstream>
 
 #include <fmt/format.h>
+#include <poll.h>
+#include <unistd.h>
 
 #include "app/jobs.h"
 #include "cli/command.h"
@@ -27,6 +31,26 @@ const char* stateName(Visibility state) {
   return "";
 }
 
+/// All of standard input. Waits in short steps, so that Ctrl+C ends a wait for somebody's typing.
+Result<std::string> readInput(const Progress& progress) {
+  constexpr int kWaitMs = 100;
+  std::string text;
+  std::vector<char> block(1 << 16);
+  for (;;) {
+    progress.report(0.0, "Reading points from standard input");
+    if (progress.cancelled()) return fail(cancelledError());
+    pollfd waiting{STDIN_FILENO, POLLIN, 0};
+    const int ready = ::poll(&waiting, 1, kWaitMs);
+    if (ready == 0 || (ready < 0 && errno == EINTR)) continue;
+    const ssize_t count = ::read(STDIN_FILENO, block.data(), block.size());
+    if (count == 0) return text;
+    if (count > 0) text.append(block.data(), static_cast<std::size_t>(count));
+    else if (errno != EINTR && errno != EAGAIN)
+      return fail(fmt::format("The points cannot be read: {}", std::strerror(errno)), "standard input",
+                  "Give them by < FILE or through a pipe: E N H, one point a line");
+  }
+}
+
 /// One point a line: three numbers between blanks, tabs, commas or semicolons; # starts a comment.
 Result<std::vector<glm::dvec3>> readPoints(std::istream& input) {
   std::vector<glm::dvec3> points;
@@ -42,9 +66,11 @@ Result<std::vector<glm::dvec3>> readPoints(std::istream& input) {
     if (at == end) continue;
     glm::dvec3 p{0};
     for (int axis = 0; axis < 3; ++axis) {
+      if (end - at > 1 && *at == '+' && at[1] != '-') ++at;  // from_chars takes no plus sign
       const auto [next, error] = std::from_chars(at, end, p[axis]);
       if (error != std::errc())
-        return fail("A line needs three numbers: E N H", "standard input, line " + std::to_string(number));
+        return fail("A line needs three numbers: E N H", fmt::format("standard input, line {}", number),
+                    "Write metres with a decimal point, blanks or commas between, and # before remarks");
       at = next;
       skip();
     }
@@ -67,7 +93,10 @@ void addProjectPoints(Verbs& verbs) {
   CLI::App* command = verbs.add(
       "project-points", "Project world points from standard input: u v depth state, one line a point",
       [arguments](const Progress& progress) -> Result<Answer> {
-        auto points = readPoints(std::cin);
+        const auto text = readInput(progress);
+        if (!text) return fail(text.error());
+        std::istringstream input(*text);
+        auto points = readPoints(input);
         if (!points) return fail(points.error());
         auto open = openProject(arguments->project, arguments->frame, true, progress);
         if (!open) return fail(open.error());

@@ -104,8 +104,10 @@ void addRefine(Verbs& verbs) {
   command->add_option("project", arguments->project, "Project file")->required();
   command->add_option("--frame", arguments->frame, "Name, or index from 0")->required();
   command->add_option("--observations", arguments->observations, "CSV: u,v,e,n,h[,sigma_px[,name]]")->required();
-  command->add_option("--lock", arguments->lock, "Of position,attitude,x,y,z");
-  command->add_option("--at", arguments->at, "E,N,H where the expected error is wanted");
+  command->add_option("--lock", arguments->lock, "Of position,attitude,x,y,z")
+      ->check(checkedBy([](const std::string& list) { ResectionOptions ignored; return applyLocks(list, ignored); }, "LIST"));
+  command->add_option("--at", arguments->at, "E,N,H where the expected error is wanted")
+      ->check(checkedBy(parsePoint, "POINT"));
   command->add_flag("--dry-run", arguments->dryRun, "Report only; leave the project as it is");
 }
 

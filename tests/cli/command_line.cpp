@@ -45,13 +45,26 @@ const fs::path& scratch() {
   return instance.path;
 }
 
-Outcome alidadeCli(const std::string& arguments, const std::string& input) {
+namespace {
+
+/// `input` comes first, so that a redirection among the arguments wins.
+Outcome ran(const std::string& before, const std::string& arguments, const std::string& input) {
   const fs::path in = scratch() / "stdin", out = scratch() / "stdout", err = scratch() / "stderr";
   std::ofstream(in, std::ios::binary) << input;
-  const std::string command = fmt::format("{} {} < {} > {} 2> {}", quoted(ALIDADE_BINARY_DIR "/bin/alidade-cli"), arguments,
-                                          quoted(in), quoted(out), quoted(err));
+  const std::string command = fmt::format("{}{} < {} {} > {} 2> {}", before, quoted(ALIDADE_BINARY_DIR "/bin/alidade-cli"),
+                                          quoted(in), arguments, quoted(out), quoted(err));
   const int status = std::system(command.c_str());
   return {WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status), contentOf(out), contentOf(err)};
+}
+
+}  // namespace
+
+Outcome alidadeCli(const std::string& arguments, const std::string& input) {
+  return ran("", arguments, input);
+}
+
+Outcome limited(const std::string& arguments, int blocks) {
+  return ran(fmt::format("ulimit -f {}; ", blocks), arguments, {});
 }
 
 const fs::path& smallDemo() {

@@ -20,6 +20,9 @@ struct Outcome {
 /// Runs `alidade-cli ARGUMENTS` in a shell, with `input` on standard input.
 Outcome alidadeCli(const std::string& arguments, const std::string& input = {});
 
+/// The same where no file may grow beyond `blocks` of 512 bytes or 1 KiB, as the shell counts them.
+Outcome limited(const std::string& arguments, int blocks);
+
 /// The path between double quotes, for a shell.
 std::string quoted(const std::filesystem::path& path);
 

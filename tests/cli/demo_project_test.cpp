@@ -140,6 +140,85 @@ TEST(CommandLine, AFullDiskOnExportIsAClearErrorAndLeavesNoFile) {
   EXPECT_FALSE(outcome.errors.empty());
 }
 
+TEST(CommandLine, BadValuesAreBadUsageBeforeAnythingIsLoaded) {
+  const std::string overlay = "overlay /nowhere/p.alidade --frame 0 -o x.png ";
+  for (const std::string wrong : {"--size 0x0", "--size 100", "--size 640X360", "--passes image,sky", "--density 2"}) {
+    const auto outcome = alidadeCli(overlay + wrong);
+    EXPECT_EQ(outcome.exitCode, 2) << wrong;
+    EXPECT_NE(outcome.errors.find(wrong.substr(0, wrong.find(' '))), std::string::npos) << outcome.errors;
+  }
+  const std::string refine = "refine /nowhere/p.alidade --frame 0 --observations o.csv ";
+  EXPECT_EQ(alidadeCli(refine + "--lock roll").exitCode, 2);
+  EXPECT_EQ(alidadeCli(refine + "--at 1,2").exitCode, 2);
+}
+
+TEST(CommandLine, JsonIsAnsweredOnErrorsToo) {
+  const auto usage = alidadeCli("overlay --json");
+  EXPECT_EQ(usage.exitCode, 2);
+  EXPECT_FALSE(usage.json()["error"]["what"].get<std::string>().empty()) << usage.output;
+  const auto verb = alidadeCli("frobnicate --json");
+  EXPECT_EQ(verb.exitCode, 2);
+  EXPECT_NE(verb.json()["error"]["what"].get<std::string>().find("frobnicate"), std::string::npos) << verb.output;
+  const auto bytes = alidadeCli("overlay --json /nowhere/\xff.alidade --frame 0 -o x.png");
+  EXPECT_EQ(bytes.exitCode, 1) << bytes.errors;
+  EXPECT_FALSE(bytes.json()["error"]["what"].get<std::string>().empty()) << bytes.output;
+}
+
+TEST(CommandLine, APictureIsNeverWrittenOverTheProjectOrItsSources) {
+  const auto picture = smallDemo() / "images/frame_0000.png";
+  const auto before = std::filesystem::file_size(picture);
+  const auto outcome = alidadeCli("overlay " + demoProject() + " --frame 0 -o " + quoted(picture));
+  EXPECT_EQ(outcome.exitCode, 1);
+  EXPECT_NE(outcome.errors.find("not overwritten"), std::string::npos) << outcome.errors;
+  EXPECT_EQ(std::filesystem::file_size(picture), before);
+  EXPECT_EQ(alidadeCli("overlay " + demoProject() + " --frame 0 -o " + demoProject()).exitCode, 1);
+  EXPECT_EQ(alidadeCli("info " + demoProject()).exitCode, 0);
+  const auto jpeg = alidadeCli("overlay " + demoProject() + " --frame 0 -o " + quoted(scratch() / "x.jpg"));
+  EXPECT_EQ(jpeg.exitCode, 1);
+  EXPECT_NE(jpeg.errors.find("PNG"), std::string::npos) << jpeg.errors;
+}
+
+TEST(CommandLine, NewReplacesAProjectOnlyWhereAskedAndNothingElseEver) {
+  const std::string scan = " --scan " + quoted(smallDemo() / "scan.las");
+  const auto project = scratch() / "again.alidade", other = scratch() / "other.txt";
+  ASSERT_EQ(alidadeCli("new " + quoted(project) + scan).exitCode, 0);
+  EXPECT_EQ(alidadeCli("new " + quoted(project) + scan).exitCode, 1);
+  EXPECT_EQ(alidadeCli("new " + quoted(project) + scan + " --overwrite").exitCode, 0);
+  std::ofstream(other) << "somebody's notes";
+  EXPECT_EQ(alidadeCli("new " + quoted(other) + scan + " --overwrite").exitCode, 1);
+  EXPECT_EQ(std::filesystem::file_size(other), 16u);
+}
+
+TEST(CommandLine, AFileSizeLimitIsAClearErrorAndLeavesTheOldFileAlone) {
+  const auto folder = scratch() / "limited";
+  std::filesystem::create_directories(folder);
+  std::ofstream(folder / "keep.png") << "old";
+  const auto outcome = limited("overlay " + demoProject() + " --frame 0 -o " + quoted(folder / "keep.png"), 8);
+  EXPECT_EQ(outcome.exitCode, 1);
+  EXPECT_NE(outcome.errors.find("no room"), std::string::npos) << outcome.errors;
+  EXPECT_EQ(std::filesystem::file_size(folder / "keep.png"), 3u);
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(folder), {}), 1);
+}
+
+TEST(CommandLine, StandardInputThatCannotBeReadIsAnError) {
+  const auto folder = alidadeCli("project-points " + demoProject() + " --frame 0 < /tmp");
+  EXPECT_EQ(folder.exitCode, 1);
+  EXPECT_NE(folder.errors.find("standard input"), std::string::npos) << folder.errors;
+  EXPECT_EQ(alidadeCli("project-points " + demoProject() + " --frame 0 <&-").exitCode, 1);
+}
+
+TEST(CommandLine, NewSaysWhatIsThereTwiceAndWhatIsMissing) {
+  const auto scan = quoted(smallDemo() / "scan.las");
+  const auto twice = alidadeCli("new --json " + quoted(scratch() / "twice.alidade") + " --scan " + scan + " " + scan +
+                                " --design " + quoted(smallDemo() / "design.ifc"));
+  ASSERT_EQ(twice.exitCode, 0) << twice.errors;
+  EXPECT_EQ(twice.json()["scans"], 1);
+  // The scan's WKT and the design's EPSG number state the same system.
+  ASSERT_EQ(twice.json()["notes"].size(), 1u) << twice.output;
+  EXPECT_NE(twice.json()["notes"][0].get<std::string>().find("already"), std::string::npos);
+  EXPECT_EQ(alidadeCli("new --json " + quoted(scratch() / "bare.alidade")).json()["notes"].size(), 1u);
+}
+
 TEST(CommandLine, AMissingSourceIsNamed) {
   const auto folder = scratch() / "moved";
   std::filesystem::create_directories(folder);
@@ -150,6 +229,8 @@ TEST(CommandLine, AMissingSourceIsNamed) {
   const auto overlay =
       alidadeCli("overlay " + quoted(folder / "demo.alidade") + " --frame 0 -o " + quoted(scratch() / "x.png"));
   EXPECT_EQ(overlay.exitCode, 1);
+  EXPECT_NE(overlay.errors.find("Move the data along"), std::string::npos) << overlay.errors;
+  EXPECT_EQ(std::count(overlay.errors.begin(), overlay.errors.end(), '\n'), 7) << "five warnings, their number, the error";
 }
 
 }  // namespace alidade::test
