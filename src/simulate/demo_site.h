@@ -14,7 +14,7 @@
 namespace alidade {
 
 struct DemoOptions {
-  std::uint64_t points = 2'000'000;  ///< of the scan, over all stations
+  std::uint64_t points = 4'000'000;  ///< of the scan, over all stations
   int frames = 45;                   ///< of the video, at 15 Hz
   std::uint32_t seed = 1;
   int width = 1280, height = 960;                          ///< of the video

@@ -177,8 +177,9 @@ SiteModel makeSite(std::uint32_t seed, const glm::dvec3& siteOrigin) {
   addElements(site);
   addTargets(site);
   addSurroundings(site.asBuilt, seed);
-  for (const auto& place :
-       {glm::dvec2(-4.0, -12.0), glm::dvec2(6.4, -11.2), glm::dvec2(1.2, -2.7), glm::dvec2(-1.0, 10.5)})
+  // Each station stands where another's shadows and the hole below its tripod are seen.
+  for (const auto& place : {glm::dvec2(-4.0, -12.0), glm::dvec2(6.4, -11.2), glm::dvec2(1.2, -2.7),
+                            glm::dvec2(-1.0, 10.5), glm::dvec2(8.5, -10.5)})
     site.stations.emplace_back(place.x, place.y,
                                std::abs(place.y) < 6 ? 0.0 : groundHeight(seed, place.x, place.y));
   return site;

@@ -89,7 +89,6 @@ ColourImage compare(const OverlayPicture& ours, const Image<std::uint8_t>& truth
 TEST(DemoSite, VisibleAndHiddenAgreeWithTheTruthForNineteenPixelsInTwenty) {
   const fs::path folder = fs::temp_directory_path() / ("alidade_truth_" + std::to_string(getpid()));
   DemoOptions options;
-  options.points = 2'000'000;
   options.frames = kFrames;
   options.width = kWidth;
   options.height = kHeight;
