@@ -112,7 +112,8 @@ TEST(Road, TheBuriedSewerIsHiddenByTheGround) {
                                   quoted(scratch() / "road.png"));
   ASSERT_EQ(outcome.exitCode, 0) << outcome.errors;
   std::uint64_t hidden = 0, all = 0;
-  for (const auto& element : outcome.json()["elements"]) {
+  const auto json = outcome.json();
+  for (const auto& element : json["elements"]) {
     if (element["name"].get<std::string>().find("Rioolpijp") == std::string::npos) continue;  // sewer pipe
     hidden += element["hidden_px"].get<std::uint64_t>();
     all += element["hidden_px"].get<std::uint64_t>() + element["visible_px"].get<std::uint64_t>();
