@@ -40,6 +40,8 @@ const std::vector<ActionSpec>& actionTable() {
        true},
       {C::ShowScene, "showScene", "3D", "scene", "", "Shows the site in 3D", true},
       {C::ShowBoth, "showBoth", "Both", "both", "", "Shows the picture and the site side by side", true},
+      {C::FloatScene, "floatScene", "3D in its own window", "panel", "F11",
+       "Takes the 3D view out, for a second screen; closing it puts it back", true},
       {C::CycleView, "cycleView", "Next view", "", "Tab", "Goes from overlay to 3D to both"},
       {C::Fit, "fit", "Fit", "fit", "F", "Fits the picture into the view"},
       {C::ActualSize, "actualSize", "Actual size", "actual", "Ctrl+0",

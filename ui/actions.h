@@ -33,6 +33,7 @@ enum class Command {
   ShowOverlay,
   ShowScene,
   ShowBoth,
+  FloatScene,
   CycleView,
   Fit,
   ActualSize,

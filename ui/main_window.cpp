@@ -89,6 +89,7 @@ MainWindow::~MainWindow() {
   for (QToolBar* bar : findChildren<QToolBar*>(QString(), Qt::FindDirectChildrenOnly)) delete bar;
   delete m_export;
   delete m_palette;
+  if (m_scene->isWindow()) m_splitter->addWidget(m_scene);  // out in its own window: it goes with the rest
   delete takeCentralWidget();
   for (QDockWidget* dock : m_docks) delete dock;
   delete statusBar();

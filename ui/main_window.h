@@ -77,6 +77,8 @@ class MainWindow : public QMainWindow {
   void connectHoldKeys();
   void connectSession();
   void showMode(Command mode);
+  void floatScene(bool on);
+  bool eventFilter(QObject* watched, QEvent* event) override;
   Command mode() const;
   void useTool();
   void chooseTheme(Theme theme);

@@ -63,6 +63,7 @@ void MainWindow::buildMenus() {
   QMenu* view = fill(tr("&View"), {id(C::ShowOverlay),
                                    id(C::ShowScene),
                                    id(C::ShowBoth),
+                                   id(C::FloatScene),
                                    id(C::CycleView),
                                    -1,
                                    id(C::Fit),
@@ -256,6 +257,8 @@ void MainWindow::connectViewActions() {
     connect(a[c], &QAction::toggled, this, [this, c](bool on) {
       if (on) showMode(c);
     });
+  connect(a[C::FloatScene], &QAction::toggled, this, &MainWindow::floatScene);
+  m_scene->installEventFilter(this);
   connect(a[C::CycleView], &QAction::triggered, this, [this] {
     const Command next = mode() == C::ShowOverlay ? C::ShowScene
                          : mode() == C::ShowScene ? C::ShowBoth
@@ -305,7 +308,36 @@ void MainWindow::connectViewActions() {
   connect(a[C::ResetLayout], &QAction::triggered, this, &MainWindow::defaultLayout);
 }
 
+void MainWindow::floatScene(bool on) {
+  if (!on) {
+    m_splitter->addWidget(m_scene);
+    showMode(mode());
+    return;
+  }
+  m_scene->setParent(this, Qt::Window);
+  m_scene->setWindowTitle(tr("Alidade – 3D"));
+  m_scene->resize(960, 720);
+  m_scene->show();
+  showMode(mode());
+}
+
+/// Closing the 3D view's own window puts the view back where it was.
+bool MainWindow::eventFilter(QObject* watched, QEvent* event) {
+  QAction* floating = (*m_actions)[C::FloatScene];
+  if (watched == m_scene && event->type() == QEvent::Close && floating->isChecked()) {
+    event->ignore();
+    floating->setChecked(false);
+    return true;
+  }
+  return QMainWindow::eventFilter(watched, event);
+}
+
 void MainWindow::showMode(Command mode) {
+  if ((*m_actions)[C::FloatScene]->isChecked()) {
+    m_overlay->setVisible(true);
+    m_overlay->setFocus();
+    return;
+  }
   m_overlay->setVisible(mode != C::ShowScene);
   m_scene->setVisible(mode != C::ShowOverlay);
   if (mode == C::ShowBoth) m_splitter->setSizes({m_splitter->width() * 3 / 5, m_splitter->width() * 2 / 5});

@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the Alidade authors
 // SPDX-License-Identifier: BSD-3-Clause
 
+#include <set>
+
 #include <QAction>
 #include <QLabel>
 #include <QLineEdit>
@@ -323,6 +325,36 @@ TEST_F(OpenWindow, TabGoesFromOverlayTo3dToBoth) {
   EXPECT_TRUE(window->scene().isVisible());
   EXPECT_TRUE(view().isVisible());
   QTest::qWait(200);
+}
+
+/// Distinct colours of the 3D picture: a black or empty view has one.
+static std::size_t coloursOf(SceneWidget& scene) {
+  const QImage picture = scene.grabFramebuffer().convertToFormat(QImage::Format_RGB32);
+  std::set<QRgb> colours;
+  for (int y = 0; y < picture.height(); y += 4)
+    for (int x = 0; x < picture.width(); x += 4) colours.insert(picture.pixel(x, y));
+  return colours.size();
+}
+
+TEST_F(OpenWindow, The3dViewGoesToItsOwnWindowAndComesBackWithItsPicture) {
+  SceneWidget& scene = window->scene();
+  window->actions()[Command::ShowBoth]->setChecked(true);
+  QTest::qWait(300);
+  ASSERT_GT(coloursOf(scene), 50u);
+  window->actions()[Command::FloatScene]->setChecked(true);
+  ASSERT_TRUE(scene.isWindow());
+  ASSERT_TRUE(QTest::qWaitForWindowExposed(&scene));
+  QTest::qWait(300);
+  EXPECT_GT(coloursOf(scene), 50u) << "the floating view is empty";
+  scene.resize(700, 500);
+  QTest::qWait(200);
+  EXPECT_GT(coloursOf(scene), 50u) << "the resized view is empty";
+  scene.close();
+  EXPECT_FALSE(scene.isWindow());
+  EXPECT_TRUE(scene.isVisible());
+  EXPECT_FALSE(window->actions()[Command::FloatScene]->isChecked());
+  QTest::qWait(300);
+  EXPECT_GT(coloursOf(scene), 50u) << "the view that came back is empty";
 }
 
 TEST_F(OpenWindow, ThePaletteRunsACommandByItsName) {
