@@ -174,22 +174,5 @@ TEST(IfcRealFiles, BoxesAndWallsFaceOutwards) {
   }
 }
 
-/// For a look at a file: IFC=file alidade_ifc_tests --gtest_also_run_disabled_tests --gtest_filter=*PrintElements
-TEST(IfcRealFiles, DISABLED_PrintElements) {
-  const char* path = std::getenv("IFC");
-  if (!path) GTEST_SKIP() << "IFC names no file";
-  std::vector<ImportWarning> warnings;
-  const auto model = IfcReader().read(path, Progress(), warnings);
-  ASSERT_TRUE(model) << model.error().text();
-  for (std::size_t i = 0; i < model->elements.size(); ++i) {
-    const DesignElement& e = model->elements[i];
-    const Bounds box = model->elementBounds(i);
-    std::printf("%-22s %-24s %-40s %-16s #%02x%02x%02x%02x %5u triangles %5u edges  %.3f %.3f %.3f  size %.3f %.3f %.3f\n",
-                e.globalId.c_str(), e.type.c_str(), e.name.c_str(), e.storey.c_str(), e.colour.r, e.colour.g, e.colour.b,
-                e.colour.a, e.indexCount / 3, e.edgeCount, box.min.x, box.min.y, box.min.z, box.size().x, box.size().y, box.size().z);
-  }
-  for (const auto& w : warnings) std::printf("! %s (%s)\n", w.what.c_str(), w.where.c_str());
-}
-
 }  // namespace
 }  // namespace alidade
