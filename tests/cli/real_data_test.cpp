@@ -101,7 +101,8 @@ TEST(Road, ProjectPointsAgreesWithOpenCvInDouble) {
   EXPECT_GT(inPicture, 100);
 }
 
-TEST(Road, TheBuriedSewerIsHiddenByTheGround) {
+// By the scanned ground or, where the pipe lies above it, by the pavement that is designed over it.
+TEST(Road, TheSewerUnderThePavementIsReportedAsHidden) {
   const auto road = sharedData("road");
   if (road.empty()) GTEST_SKIP() << "the road data set is not here";
   const auto project = scratch() / "road_overlay.alidade";
