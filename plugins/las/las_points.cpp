@@ -49,14 +49,12 @@ void decodeExtra(const LasHeader& header, const char* name, const std::byte* rec
   }
 }
 
-void decodeColours(const LasHeader& header, const std::byte* records, std::size_t count, bool unshifted,
-                   std::vector<glm::u8vec3>& out) {
+void decodeColours(const LasHeader& header, const std::byte* records, std::size_t count,
+                   std::vector<glm::u16vec3>& out) {
   out.resize(count);
-  const int shift = unshifted ? 0 : 8;
   const std::byte* at = records + header.rgbOffset();
   for (std::size_t i = 0; i < count; ++i, at += header.recordLength)
-    out[i] = glm::u8vec3(lasValue<std::uint16_t>(at, 0) >> shift, lasValue<std::uint16_t>(at, 2) >> shift,
-                         lasValue<std::uint16_t>(at, 4) >> shift);
+    out[i] = {lasValue<std::uint16_t>(at, 0), lasValue<std::uint16_t>(at, 2), lasValue<std::uint16_t>(at, 4)};
 }
 
 }  // namespace
@@ -104,6 +102,7 @@ void decodeLasPoints(const LasHeader& header, const std::byte* records, std::siz
   batch.intensity.resize(count);
   batch.classification.resize(count);
   batch.returnNumber.resize(count);
+  batch.returnCount.resize(count);
   const std::byte* at = records;
   for (std::size_t i = 0; i < count; ++i, at += stride) {
     const glm::dvec3 steps(lasValue<std::int32_t>(at, 0), lasValue<std::int32_t>(at, 4), lasValue<std::int32_t>(at, 8));
@@ -111,6 +110,7 @@ void decodeLasPoints(const LasHeader& header, const std::byte* records, std::siz
     batch.intensity[i] = lasValue<std::uint16_t>(at, 12);
     const auto returns = lasValue<std::uint8_t>(at, 14);
     batch.returnNumber[i] = returns & (wide ? 0x0F : 0x07);
+    batch.returnCount[i] = wide ? returns >> 4 : returns >> 3 & 0x07;
     // Formats 0-5 keep three flags in the upper bits of the classification.
     batch.classification[i] = wide ? lasValue<std::uint8_t>(at, 16) : lasValue<std::uint8_t>(at, 15) & 0x1F;
   }
@@ -119,7 +119,8 @@ void decodeLasPoints(const LasHeader& header, const std::byte* records, std::siz
     at = records + header.gpsTimeOffset();
     for (std::size_t i = 0; i < count; ++i, at += stride) batch.gpsTime[i] = lasValue<double>(at, 0);
   }
-  if (header.hasRgb()) decodeColours(header, records, count, unshiftedColours, batch.rgb);
+  if (header.hasRgb()) decodeColours(header, records, count, batch.rgb);
+  batch.rgbWhite = unshiftedColours ? 255 : 65535;
   decodeExtra(header, "row", records, count, batch.row);
   decodeExtra(header, "column", records, count, batch.column);
   decodeExtra(header, "scanner", records, count, batch.scanner);
@@ -127,10 +128,8 @@ void decodeLasPoints(const LasHeader& header, const std::byte* records, std::siz
     batch.row.clear();
     batch.column.clear();
   }
-  if (batch.scanner.empty() || header.extra("scanner") == nullptr) {
-    batch.scanner.resize(count);
-    copyInteger<std::uint16_t, std::uint16_t>(records + (wide ? 20 : 18), stride, count, batch.scanner);
-  }
+  batch.pointSource.resize(count);
+  copyInteger<std::uint16_t, std::uint16_t>(records + (wide ? 20 : 18), stride, count, batch.pointSource);
 }
 
 }  // namespace alidade

@@ -51,6 +51,7 @@ Result<ScanInfo> LasReader::inspect(const std::string& path) const {
   info.bounds = header->bounds;
   info.crs = header->crs;
   info.scale = header->scale;
+  info.offset = header->offset;
   if (header->hasRgb()) info.attributes.push_back("rgb");
   info.attributes.insert(info.attributes.end(), {"intensity", "classification", "return_number"});
   if (header->hasGpsTime()) info.attributes.push_back("gps_time");
@@ -62,7 +63,7 @@ Result<ScanInfo> LasReader::inspect(const std::string& path) const {
 }
 
 Result<std::vector<ImportWarning>> LasReader::read(const std::string& path,
-                                                   const std::function<bool(const PointBatch&)>& sink,
+                                                   const BatchSink& sink,
                                                    const Progress& progress) const {
   const auto file = InputFile::open(path);
   if (!file) return fail(file.error());

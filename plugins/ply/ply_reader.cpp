@@ -76,7 +76,7 @@ Result<ScanInfo> PlyReader::inspect(const std::string& path) const {
 }
 
 Result<std::vector<ImportWarning>> PlyReader::read(const std::string& path,
-                                                   const std::function<bool(const PointBatch&)>& sink,
+                                                   const BatchSink& sink,
                                                    const Progress& progress) const {
   const auto file = InputFile::open(path);
   if (!file) return fail(file.error());

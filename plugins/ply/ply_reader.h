@@ -18,7 +18,7 @@ class PlyReader : public ScanReader {
   int sniff(const FileProbe& probe) const override;
   Result<ScanInfo> inspect(const std::string& path) const override;
   Result<std::vector<ImportWarning>> read(const std::string& path,
-                                          const std::function<bool(const PointBatch&)>& sink,
+                                          const BatchSink& sink,
                                           const Progress& progress) const override;
 };
 

@@ -39,7 +39,8 @@ void SourceColumns::add(const PointBatch& batch) {
     }
     TintOf tint;
     if (hasRgb) {
-      tint = {{batch.rgb[i].r, batch.rgb[i].g, batch.rgb[i].b}, Tint::Rgb};
+      const glm::u8vec3 c = batch.rgb8(i);
+      tint = {{c.r, c.g, c.b}, Tint::Rgb};
     } else if (hasIntensity) {
       const std::uint16_t v = batch.intensity[i];
       m_largestIntensity = std::max(m_largestIntensity, v);

@@ -16,16 +16,6 @@ namespace {
 constexpr double kLargestCoordinate = 1e12;
 
 template <class T>
-double load(const std::byte* bytes, bool swapped) {
-  std::array<std::byte, sizeof(T)> raw;
-  std::memcpy(raw.data(), bytes, sizeof(T));
-  if (swapped) std::reverse(raw.begin(), raw.end());
-  T value;
-  std::memcpy(&value, raw.data(), sizeof(T));
-  return static_cast<double>(value);
-}
-
-template <class T>
 T clamped(double value) {
   if (!(value > 0)) return 0;
   return value >= static_cast<double>(std::numeric_limits<T>::max()) ? std::numeric_limits<T>::max()
@@ -41,35 +31,6 @@ bool usable(double coordinate) {
 }
 
 }  // namespace
-
-std::size_t numberSize(NumberType type) {
-  switch (type) {
-    case NumberType::I8:
-    case NumberType::U8: return 1;
-    case NumberType::I16:
-    case NumberType::U16: return 2;
-    case NumberType::I32:
-    case NumberType::U32:
-    case NumberType::F32: return 4;
-    default: return 8;
-  }
-}
-
-double numberAt(const std::byte* bytes, NumberType type, bool swapped) {
-  switch (type) {
-    case NumberType::I8: return load<std::int8_t>(bytes, swapped);
-    case NumberType::U8: return load<std::uint8_t>(bytes, swapped);
-    case NumberType::I16: return load<std::int16_t>(bytes, swapped);
-    case NumberType::U16: return load<std::uint16_t>(bytes, swapped);
-    case NumberType::I32: return load<std::int32_t>(bytes, swapped);
-    case NumberType::U32: return load<std::uint32_t>(bytes, swapped);
-    case NumberType::I64: return load<std::int64_t>(bytes, swapped);
-    case NumberType::U64: return load<std::uint64_t>(bytes, swapped);
-    case NumberType::F32: return load<float>(bytes, swapped);
-    case NumberType::F64: return load<double>(bytes, swapped);
-  }
-  return 0;
-}
 
 int PointColumns::roleOf(const std::string& lowerCaseName) {
   static const std::array<std::vector<const char*>, kRoles> kNames = {{
@@ -182,7 +143,7 @@ void PointColumns::takeNormals() {
   }
 }
 
-const PointBatch& PointColumns::take() {
+PointBatch& PointColumns::take() {
   if (!m_learned && m_rowCount > 0) learnRanges();
   m_batch.clear();
   m_batch.position.resize(m_rowCount);

@@ -10,17 +10,10 @@
 #include <vector>
 
 #include "base/error.h"
+#include "survey/number_type.h"
 #include "survey/point_batch.h"
 
 namespace alidade {
-
-/// Number types that point files of named columns use.
-enum class NumberType { I8, U8, I16, U16, I32, U32, I64, U64, F32, F64 };
-
-/// Bytes of one number.
-std::size_t numberSize(NumberType type);
-/// The number at `bytes` (any alignment); `swapped` where its byte order is not the machine's.
-double numberAt(const std::byte* bytes, NumberType type, bool swapped);
 
 /// For formats whose points are rows of named columns (PLY, PCD, text): finds out which column is
 /// what, and turns rows of numbers into batches.
@@ -47,8 +40,8 @@ class PointColumns {
   void addRow(const double* values);
   /// Rows added since the last take().
   std::size_t rowCount() const { return m_rowCount; }
-  /// The rows as a batch, valid until the next call.
-  const PointBatch& take();
+  /// The rows as a batch, valid until the next call; the caller may take its columns away.
+  PointBatch& take();
   std::uint64_t droppedCount() const { return m_dropped; }
 
   /// True for a column that addRow ignores.

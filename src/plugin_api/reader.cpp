@@ -3,6 +3,7 @@
 
 #include "plugin_api/reader.h"
 
+#include <algorithm>
 #include <string_view>
 
 namespace alidade {
@@ -14,6 +15,25 @@ std::string_view textOf(const FileProbe& probe) {
 }
 
 }  // namespace
+
+Result<void> ScanReader::sample(const std::string& path, std::uint64_t wanted, const BatchSink& sink,
+                                const Progress& progress) const {
+  const auto info = inspect(path);
+  if (!info) return fail(info.error());
+  const std::uint64_t step = std::max<std::uint64_t>(1, info->pointCount / std::max<std::uint64_t>(1, wanted));
+  std::uint64_t next = 0, seen = 0;  // places in the file
+  const auto outcome = read(
+      path,
+      [&](PointBatch& batch) {
+        PointBatch some = batch.every(next - seen, step);
+        next += some.size() * step;
+        seen += batch.size();
+        return some.size() == 0 || sink(some);
+      },
+      progress);
+  if (!outcome) return fail(outcome.error());
+  return {};
+}
 
 bool FileProbe::startsWith(std::string_view text) const {
   return textOf(*this).starts_with(text);

@@ -60,16 +60,22 @@ class Reader {
   virtual int sniff(const FileProbe& probe) const = 0;
 };
 
+/// Takes a run of points. It may take the batch's columns away (swap or move): the reader fills them anew.
+/// Returns false to stop early, which is no error.
+using BatchSink = std::function<bool(PointBatch& batch)>;
+
 class ScanReader : public Reader {
  public:
   ReaderKind kind() const final { return ReaderKind::Scan; }
   /// From the header alone; no point is loaded.
   virtual Result<ScanInfo> inspect(const std::string& path) const = 0;
   /// Hands over all points in file order, in batches of at most some 100 k, on the calling thread.
-  /// `sink` returns false to stop early (not an error).
-  virtual Result<std::vector<ImportWarning>> read(const std::string& path,
-                                                  const std::function<bool(const PointBatch&)>& sink,
+  virtual Result<std::vector<ImportWarning>> read(const std::string& path, const BatchSink& sink,
                                                   const Progress& progress) const = 0;
+  /// Hands over about `wanted` points taken evenly from the whole file, as fast as the format allows:
+  /// for a first picture. Here: every n-th of all points.
+  virtual Result<void> sample(const std::string& path, std::uint64_t wanted, const BatchSink& sink,
+                              const Progress& progress) const;
 };
 
 class DesignReader : public Reader {

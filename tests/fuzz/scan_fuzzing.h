@@ -31,7 +31,8 @@ inline void fuzzScanReader(const ScanReader& reader, const std::uint8_t* data, s
         const auto fits = [&](const auto& column) { return column.empty() || column.size() == batch.size(); };
         const bool good = batch.size() <= 100000 && fits(batch.rgb) && fits(batch.intensity) &&
                           fits(batch.classification) && fits(batch.returnNumber) && fits(batch.gpsTime) &&
-                          fits(batch.normal) && fits(batch.scanner) && fits(batch.row) && fits(batch.column);
+                          fits(batch.returnCount) && fits(batch.normal) && fits(batch.scanner) &&
+                          fits(batch.pointSource) && fits(batch.row) && fits(batch.column);
         if (!good) std::abort();
         for (const auto& p : batch.position)
           if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) std::abort();

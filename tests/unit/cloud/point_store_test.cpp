@@ -33,7 +33,7 @@ void expectEverySourcePoint(const PointStore& store, const PointBatch& batch) {
                 std::bit_cast<std::uint64_t>(batch.position[source][axis]));
     }
     if (!batch.rgb.empty()) {
-      ASSERT_EQ(store.sourceColour(i), batch.rgb[source]);
+      ASSERT_EQ(store.sourceColour(i), batch.rgb8(source));
     }
   }
 }

@@ -41,7 +41,7 @@ Reading readAll(const std::string& path) {
         append(reading.all.classification, batch.classification);
         append(reading.all.returnNumber, batch.returnNumber);
         append(reading.all.gpsTime, batch.gpsTime);
-        append(reading.all.scanner, batch.scanner);
+        append(reading.all.pointSource, batch.pointSource);
         append(reading.all.row, batch.row);
         append(reading.all.column, batch.column);
         return true;
@@ -120,14 +120,14 @@ TEST(LasReader, EveryFieldComesFromItsPlaceInEachFormat) {
     EXPECT_EQ(reading.all.intensity[0], 54321);
     EXPECT_EQ(reading.all.returnNumber[0], l.format >= 6 ? 12 : 5);
     EXPECT_EQ(reading.all.classification[0], l.format >= 6 ? 66 : 6);
-    EXPECT_EQ(reading.all.scanner[0], 7326);
+    EXPECT_EQ(reading.all.pointSource[0], 7326);
     ASSERT_EQ(reading.all.gpsTime.size(), l.gps > 0 ? 1u : 0u);
     if (l.gps > 0) {
       EXPECT_EQ(reading.all.gpsTime[0], 245380.78254962614);
     }
     ASSERT_EQ(reading.all.rgb.size(), l.rgb > 0 ? 1u : 0u);
     if (l.rgb > 0) {
-      EXPECT_EQ(reading.all.rgb[0], glm::u8vec3(0x12, 0x52, 0x92));
+      EXPECT_EQ(reading.all.rgb[0], glm::u16vec3(0x12, 0x52, 0x92));
     }
   }
 }
@@ -166,7 +166,7 @@ TEST(LasReader, ExtraBytesNamedRowColumnAndScannerFillThoseColumns) {
   const std::string path = file.write("extra.las");
   const Reading reading = readAll(path);
   ASSERT_EQ(reading.all.size(), 1u) << reading.error;
-  EXPECT_THAT(reading.all.scanner, ::testing::ElementsAre(2));
+  EXPECT_THAT(reading.all.pointSource, ::testing::ElementsAre(2));
   EXPECT_THAT(reading.all.row, ::testing::ElementsAre(1234567u));
   EXPECT_THAT(reading.all.column, ::testing::ElementsAre(89u));
   EXPECT_THAT(LasReader().inspect(path)->attributes, Contains("reflectance"));

@@ -41,7 +41,7 @@ PointBatch readAll(const fs::path& path, std::string* warnings = nullptr) {
         all.rgb.insert(all.rgb.end(), batch.rgb.begin(), batch.rgb.end());
         all.intensity.insert(all.intensity.end(), batch.intensity.begin(), batch.intensity.end());
         all.gpsTime.insert(all.gpsTime.end(), batch.gpsTime.begin(), batch.gpsTime.end());
-        all.scanner.insert(all.scanner.end(), batch.scanner.begin(), batch.scanner.end());
+        all.pointSource.insert(all.pointSource.end(), batch.pointSource.begin(), batch.pointSource.end());
         all.classification.insert(all.classification.end(), batch.classification.begin(),
                                   batch.classification.end());
         return true;
@@ -102,7 +102,7 @@ TEST(LasRealFiles, TheFirstPointOfSimpleLasIsTheOneThatPdalPublishes) {
   EXPECT_NEAR(all.position[0].x, 637012.240000, 1e-6);
   EXPECT_NEAR(all.position[0].y, 849028.310000, 1e-6);
   EXPECT_NEAR(all.position[0].z, 431.660000, 1e-6);
-  EXPECT_EQ(all.rgb[0], glm::u8vec3(68, 77, 88));
+  EXPECT_EQ(all.rgb[0], glm::u16vec3(68, 77, 88));
   EXPECT_NEAR(all.gpsTime[0], 245380.78254962614, 1e-9);
 }
 
@@ -118,7 +118,7 @@ TEST(LasRealFiles, TheSamePointsStandInEveryCoding) {
       ASSERT_EQ(all.size(), truth.size()) << name;
       EXPECT_TRUE(all.position == truth.position) << name;
       EXPECT_TRUE(all.intensity == truth.intensity) << name;
-      EXPECT_TRUE(all.scanner == truth.scanner) << name;
+      EXPECT_TRUE(all.pointSource == truth.pointSource) << name;
       EXPECT_TRUE(all.gpsTime.empty() || all.gpsTime == truth.gpsTime) << name;
       EXPECT_TRUE(all.rgb.empty() || all.rgb == truth.rgb) << name;
     }

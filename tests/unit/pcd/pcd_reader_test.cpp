@@ -85,7 +85,7 @@ TEST(PcdReader, TextBinaryAndCompressedGiveTheSamePoints) {
                 ElementsAre(glm::dvec3(1.5, 7, 0.125), glm::dvec3(-2.25, 8, 0), glm::dvec3(100, 9, -1)))
         << reading.error;
     EXPECT_THAT(reading.all.rgb,
-                ElementsAre(glm::u8vec3(255, 128, 1), glm::u8vec3(16, 32, 48), glm::u8vec3(0, 0, 0)));
+                ElementsAre(glm::u16vec3(255, 128, 1), glm::u16vec3(16, 32, 48), glm::u16vec3(0, 0, 0)));
     EXPECT_THAT(reading.all.intensity, ElementsAre(65535, 0, 700));
   }
 }

@@ -67,7 +67,7 @@ TEST(PlyReader, BothByteOrdersGiveTheSamePointsBehindElementsThatAreSkipped) {
     const auto reading = readText(content);
     ASSERT_EQ(reading.all.size(), 2u) << reading.error;
     EXPECT_EQ(reading.all.position[1], glm::dvec3(100551.867, 2, 3));
-    EXPECT_EQ(reading.all.rgb[0], glm::u8vec3(200, 100, 50));
+    EXPECT_EQ(reading.all.rgb[0], glm::u16vec3(200, 100, 50));
     EXPECT_NEAR(reading.all.normal[0].z, 0.8, 1e-6);
     EXPECT_THAT(reading.warnings, HasSubstr("2 faces were ignored"));
   }
@@ -93,12 +93,12 @@ TEST(PlyReader, ColoursAndIntensitiesOfAnyRangeBecomeFullRange) {
   const auto floats = readText(kHead + "element vertex 1\n" + kXyz +
                                "property float r\nproperty float g\nproperty float b\nproperty float scalar_Intensity\n" +
                                kEnd + "1 2 3 1 0.5 0 0.25\n");
-  EXPECT_THAT(floats.all.rgb, ElementsAre(glm::u8vec3(255, 127, 0))) << floats.error;
+  EXPECT_THAT(floats.all.rgb, ElementsAre(glm::u16vec3(255, 127, 0))) << floats.error;
   EXPECT_NEAR(floats.all.intensity[0], 16384, 1);
   const auto shorts = readText(kHead + "element vertex 1\n" + kXyz +
                                "property ushort diffuse_red\nproperty ushort diffuse_green\n"
                                "property ushort diffuse_blue\nproperty uchar intensity\n" + kEnd + "1 2 3 65535 32768 256 255\n");
-  EXPECT_THAT(shorts.all.rgb, ElementsAre(glm::u8vec3(255, 128, 1))) << shorts.error;
+  EXPECT_THAT(shorts.all.rgb, ElementsAre(glm::u16vec3(255, 128, 1))) << shorts.error;
   EXPECT_EQ(shorts.all.intensity[0], 65535);
 }
 
@@ -176,7 +176,7 @@ TEST(PlyReader, RealFilesOfOtherProgramsAreReadOrRefused) {
   EXPECT_EQ(count("issue_2421.ply"), 1u);
   const auto extra = readScan(PlyReader(), (kData / "text_extradim.ply").string());
   ASSERT_EQ(extra.all.size(), 1u) << extra.error;
-  EXPECT_EQ(extra.all.rgb[0], glm::u8vec3(63, 200, 64));
+  EXPECT_EQ(extra.all.rgb[0], glm::u16vec3(63, 200, 64));
   EXPECT_EQ(extra.all.position[0], glm::dvec3(-2.64944, -13.0955, 0.00640115));
   const auto binary = readScan(PlyReader(), (kData / "simple_binary.ply").string());
   EXPECT_THAT(binary.all.position, ElementsAre(glm::dvec3(-1, 0, 0), glm::dvec3(0, 1, 0), glm::dvec3(1, 0, 0)));
