@@ -37,11 +37,14 @@ Reading readAll(const std::string& path) {
       [&](const PointBatch& batch) {
         append(reading.all.position, batch.position);
         append(reading.all.rgb, batch.rgb);
+        reading.all.rgbWhite = batch.rgbWhite;
         append(reading.all.intensity, batch.intensity);
         append(reading.all.classification, batch.classification);
         append(reading.all.returnNumber, batch.returnNumber);
+        append(reading.all.returnCount, batch.returnCount);
         append(reading.all.gpsTime, batch.gpsTime);
         append(reading.all.pointSource, batch.pointSource);
+        append(reading.all.scanner, batch.scanner);
         append(reading.all.row, batch.row);
         append(reading.all.column, batch.column);
         return true;
@@ -119,6 +122,7 @@ TEST(LasReader, EveryFieldComesFromItsPlaceInEachFormat) {
     ASSERT_EQ(reading.all.size(), 1u) << "format " << l.format << ": " << reading.error;
     EXPECT_EQ(reading.all.intensity[0], 54321);
     EXPECT_EQ(reading.all.returnNumber[0], l.format >= 6 ? 12 : 5);
+    EXPECT_EQ(reading.all.returnCount[0], l.format >= 6 ? 15 : 7);
     EXPECT_EQ(reading.all.classification[0], l.format >= 6 ? 66 : 6);
     EXPECT_EQ(reading.all.pointSource[0], 7326);
     ASSERT_EQ(reading.all.gpsTime.size(), l.gps > 0 ? 1u : 0u);
@@ -127,7 +131,8 @@ TEST(LasReader, EveryFieldComesFromItsPlaceInEachFormat) {
     }
     ASSERT_EQ(reading.all.rgb.size(), l.rgb > 0 ? 1u : 0u);
     if (l.rgb > 0) {
-      EXPECT_EQ(reading.all.rgb[0], glm::u16vec3(0x12, 0x52, 0x92));
+      EXPECT_EQ(reading.all.rgb[0], glm::u16vec3(0x1234, 0x5234, 0x9234));
+      EXPECT_EQ(reading.all.rgbWhite, 65535);
     }
   }
 }
@@ -142,12 +147,16 @@ TEST(LasReader, ColoursStoredAsEightBitsAreNotShiftedAwayAndOneBrightPointDecide
   Reading reading = readAll(file.write("dim.las"));
   ASSERT_EQ(reading.all.rgb.size(), 200000u);
   EXPECT_EQ(reading.all.rgb[7].r, 200);
+  EXPECT_EQ(reading.all.rgbWhite, 255);
+  EXPECT_EQ(reading.all.rgb8(7).r, 200);
   EXPECT_THAT(warningsOf(reading), HasSubstr("8-bit"));
 
   file.put<std::uint16_t>(last + 22, 65280);
   reading = readAll(file.write("dim.las"));
-  EXPECT_EQ(reading.all.rgb[7].r, 0);
-  EXPECT_EQ(reading.all.rgb.back().g, 255);
+  EXPECT_EQ(reading.all.rgbWhite, 65535);
+  EXPECT_EQ(reading.all.rgb[7].r, 200);
+  EXPECT_EQ(reading.all.rgb8(7).r, 0);
+  EXPECT_EQ(reading.all.rgb8(199999).g, 255);
 }
 
 TEST(LasReader, ExtraBytesNamedRowColumnAndScannerFillThoseColumns) {
@@ -166,7 +175,8 @@ TEST(LasReader, ExtraBytesNamedRowColumnAndScannerFillThoseColumns) {
   const std::string path = file.write("extra.las");
   const Reading reading = readAll(path);
   ASSERT_EQ(reading.all.size(), 1u) << reading.error;
-  EXPECT_THAT(reading.all.pointSource, ::testing::ElementsAre(2));
+  EXPECT_THAT(reading.all.scanner, ::testing::ElementsAre(2));
+  EXPECT_THAT(reading.all.pointSource, ::testing::ElementsAre(99));
   EXPECT_THAT(reading.all.row, ::testing::ElementsAre(1234567u));
   EXPECT_THAT(reading.all.column, ::testing::ElementsAre(89u));
   EXPECT_THAT(LasReader().inspect(path)->attributes, Contains("reflectance"));
