@@ -1,7 +1,7 @@
 -- SPDX-FileCopyrightText: 2026 the Alidade authors
 -- SPDX-License-Identifier: BSD-3-Clause
 --
--- The project file, version 1 (PRAGMA user_version; application_id is "ALID"). Lengths are metres in
+-- The project file, version 2 (PRAGMA user_version; application_id is "ALID"). Lengths are metres in
 -- the project's own system (E, N, up), angles radians, times seconds, pixels have OpenCV's origin.
 -- `position` keeps the order of a list from 0. Numbers without a type keep every bit of a double: a
 -- REAL column would turn -0.0 into 0. NULL in such a column is NaN. Text that is not UTF-8 is a blob.
@@ -18,6 +18,14 @@ CREATE TABLE display (
   light_x, light_y, light_z, ambient, diffuse, specular, shininess,
   stake_points, annotations, labels,
   subdivision_error_px, depth_tolerance_m
+);
+
+-- Since version 2. hidden_classes: ASPRS codes between blanks.
+CREATE TABLE point_style (
+  colour_by, ramp, automatic_range, range_low, range_high, hidden_classes,
+  box_on, box_e, box_n, box_h, box_size_x, box_size_y, box_size_z, box_heading_rad,
+  section_on, section_e, section_n, section_h, section_azimuth_rad, section_elevation_rad, section_thickness_m,
+  size_law, eye_dome, eye_dome_strength
 );
 
 -- A source's path is relative to the project file; size in bytes; hash as io/project_store.h says.

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <string>
 
+#include "survey/classification.h"
 #include "survey/project.h"
 
 namespace alidade {
@@ -102,6 +103,33 @@ void visit(V& v, DisplaySettings& d) {
   v("labels", d.labels);
   v("subdivision_error_px", d.subdivisionErrorPx);
   v("depth_tolerance_m", d.depthToleranceM);
+}
+
+template <class V>
+void visit(V& v, PointStyle& p) {
+  v.choice("colour_by", p.colourBy,
+           {"rgb", "intensity", "height", "classification", "return", "gps_time", "scan", "distance", "normal"});
+  v.choice("ramp", p.ramp, {"viridis", "cividis", "grey"});
+  v("automatic_range", p.automaticRange);
+  v("range_low", p.rangeLow);
+  v("range_high", p.rangeHigh);
+  std::string classes = textOfClasses(p.hiddenClasses);
+  v("hidden_classes", classes);
+  const auto parsed = classesOfText(classes);
+  v.check(parsed.has_value(), "hidden_classes", "is no list of classes");
+  if (parsed) p.hiddenClasses = *parsed;
+  v("box_on", p.clipBox.on);
+  visitVector(v, {"box_e", "box_n", "box_h"}, p.clipBox.centre);
+  visitVector(v, {"box_size_x", "box_size_y", "box_size_z"}, p.clipBox.size);
+  v("box_heading_rad", p.clipBox.headingRad);
+  v("section_on", p.section.on);
+  visitVector(v, {"section_e", "section_n", "section_h"}, p.section.point);
+  v("section_azimuth_rad", p.section.azimuthRad);
+  v("section_elevation_rad", p.section.elevationRad);
+  v("section_thickness_m", p.section.thicknessM);
+  v.choice("size_law", p.sizeLaw, {"spacing", "screen", "fixed"});
+  v("eye_dome", p.eyeDome);
+  v("eye_dome_strength", p.eyeDomeStrength);
 }
 
 template <class V>

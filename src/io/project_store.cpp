@@ -136,6 +136,7 @@ Result<void> writeAll(const ProjectDatabase& database, const Project& project) {
 
   return writeRows(database, "project", std::vector<ProjectRow>{{project.name, project.crs}})
       .and_then([&] { return writeRows(database, "display", std::vector<DisplaySettings>{project.display}); })
+      .and_then([&] { return writeRows(database, "point_style", std::vector<PointStyle>{project.display.points}); })
       .and_then([&] { return writeScans(database, project); })
       .and_then([&] { return writeDesigns(database, project); })
       .and_then([&] { return writeCameras(database, project); })
@@ -179,6 +180,11 @@ Result<void> checkHeader(const std::string& path) {
   return {};
 }
 
+/// Tables that older versions did not write; what they hold keeps its defaults then.
+bool isOptional(const std::string& table) {
+  return table == "point_style";
+}
+
 /// A foreign hand may have put a view, a virtual or a computed table where a plain one is expected:
 /// only plain tables are read, they can neither run code nor grow beyond the file.
 Result<void> checkTables(const ProjectDatabase& database, const std::string& path) {
@@ -197,7 +203,7 @@ Result<void> checkTables(const ProjectDatabase& database, const std::string& pat
   for (const std::string& statement : schemaStatements()) {
     const std::size_t begin = statement.find("TABLE ") + 6;
     const std::string name = statement.substr(begin, statement.find_first_of(" (", begin) - begin);
-    if (!plain.contains(name)) return fail("The project file lacks the table '" + name + "'", path, advice);
+    if (!plain.contains(name) && !isOptional(name)) return fail("The project file lacks the table '" + name + "'", path, advice);
     QSqlQuery columns = database.query();
     if (!columns.exec(QString::fromStdString("PRAGMA main.table_xinfo(" + name + ")")))
       return fail(database.error(columns, "The project's tables cannot be read"));
@@ -231,6 +237,13 @@ Result<void> readInto(const ProjectDatabase& database, const std::string& path, 
   return {};
 }
 
+bool hasTable(const ProjectDatabase& database, const std::string& table) {
+  QSqlQuery query = database.query();
+  query.prepare("SELECT 1 FROM main.sqlite_master WHERE type = 'table' AND rootpage > 0 AND name = ?");
+  query.addBindValue(QString::fromStdString(table));
+  return query.exec() && query.next();
+}
+
 Result<void> readHead(const ProjectDatabase& database, const std::string& path, Project& project) {
   const auto heads = readRows<ProjectRow>(database, path, "project", false);
   if (!heads) return fail(heads.error());
@@ -241,6 +254,12 @@ Result<void> readHead(const ProjectDatabase& database, const std::string& path, 
   project.name = heads->front().name;
   project.crs = heads->front().crs;
   project.display = displays->front();
+  if (!hasTable(database, "point_style")) return {};
+  const auto styles = readRows<PointStyle>(database, path, "point_style", false);
+  if (!styles) return fail(styles.error());
+  if (styles->size() != 1)
+    return fail("The project file is damaged: it must have one point style", path, "Open a backup of the project");
+  project.display.points = styles->front();
   return {};
 }
 

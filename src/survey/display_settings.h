@@ -5,6 +5,8 @@
 
 #include <glm/glm.hpp>
 
+#include "survey/point_style.h"
+
 namespace alidade {
 
 /// How parts of the design that the scan hides are drawn.
@@ -28,6 +30,7 @@ struct DisplaySettings {
   double pointsPerSquareMetre = 150000.0;  ///< D of Zhang (2020)
   double pointSize = 1.0;      ///< user's factor on the automatic point size
   bool roundPoints = false;
+  PointStyle points;
 
   HiddenStyle hidden = HiddenStyle::Ghost;
   double designOpacity = 0.55;  ///< of visible surfaces; edges are opaque

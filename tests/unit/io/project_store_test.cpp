@@ -59,6 +59,7 @@ std::string printed(Project project) {
   ProjectRow head{project.name, project.crs};
   visit(p, head);
   visit(p, project.display);
+  visit(p, project.display.points);
   p.list("scans", project.scans);
   for (Scan& scan : project.scans) {
     for (std::string& attribute : scan.info.attributes) p("attribute", attribute);
@@ -114,6 +115,8 @@ Project fullProject(const TestFolder& folder) {
   project.name = "Straße Nord";
   project.crs = "EPSG:31370";
   visit(fill, project.display);
+  visit(fill, project.display.points);
+  project.display.points.hiddenClasses.set(7).set(18).set(255);
   project.scans.resize(2);
   project.designs.resize(2);
   for (auto& scan : project.scans) {
@@ -307,6 +310,16 @@ TEST(ProjectStore, RefusesANewerVersionByName) {
   EXPECT_EQ(loaded.error().advice, "Update Alidade");
 }
 
+TEST(ProjectStore, ReadsAProjectOfVersionOne) {
+  const TestFolder folder;
+  const std::string path = savedProject(folder);
+  tamper(path, "DROP TABLE point_style");
+  tamper(path, "PRAGMA user_version = 1");
+  const auto loaded = loadProject(path);
+  ASSERT_TRUE(loaded) << loaded.error().text();
+  EXPECT_EQ(loaded->display.points, PointStyle());
+}
+
 TEST(ProjectStore, RefusesEveryTruncation) {
   const TestFolder folder;
   const std::string whole = TestFolder::read(savedProject(folder));
@@ -338,6 +351,8 @@ TEST(ProjectStore, RefusesWrongValuesByTableAndColumn) {
       {"UPDATE stake_point SET name = 12", "name"},
       {"UPDATE scan_station SET scan = 99", "belongs to nothing"},
       {"DELETE FROM display", "one project"},
+      {"DELETE FROM point_style", "one point style"},
+      {"UPDATE point_style SET hidden_classes = '7 256'", "hidden_classes"},
       {"DROP TABLE finding", "finding"},
       {"ALTER TABLE video ADD COLUMN bomb GENERATED ALWAYS AS (zeroblob(1000000000))", "video"},
   };
