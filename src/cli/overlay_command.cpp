@@ -8,6 +8,7 @@
 
 #include "app/jobs.h"
 #include "cli/command.h"
+#include "cli/point_style_options.h"
 #include "cli/project_input.h"
 
 namespace alidade::cli {
@@ -84,7 +85,7 @@ Json elementsJson(const RenderedFrame& rendered) {
   return list;
 }
 
-Result<Answer> run(const Arguments& arguments, const Progress& progress) {
+Result<Answer> run(const Arguments& arguments, const PointStyleOptions& style, const Progress& progress) {
   const auto check = [&](const Project& project) { return checkOutput(arguments.output, project); };
   auto open = openProject(arguments.project, arguments.frame, true, progress.part(0.0, 0.8), check);
   if (!open) return fail(open.error());
@@ -96,6 +97,7 @@ Result<Answer> run(const Arguments& arguments, const Progress& progress) {
   if (arguments.hidden == "hide") display.hidden = HiddenStyle::Hide;
   if (arguments.hidden == "ghost") display.hidden = HiddenStyle::Ghost;
   if (arguments.hidden == "dash") display.hidden = HiddenStyle::Dash;
+  if (auto done = style.apply(display.points); !done) return fail(done.error());
   const auto size = parseSize(arguments.size);
   if (!size) return fail(size.error());
 
@@ -129,8 +131,11 @@ Result<Answer> run(const Arguments& arguments, const Progress& progress) {
 
 void addOverlay(Verbs& verbs) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = verbs.add("overlay", "Draw the design over a frame and save the picture",
-                                [arguments](const Progress& progress) { return run(*arguments, progress); });
+  auto style = std::make_shared<std::optional<PointStyleOptions>>();
+  CLI::App* command =
+      verbs.add("overlay", "Draw the design over a frame and save the picture",
+                [arguments, style](const Progress& progress) { return run(*arguments, **style, progress); });
+  style->emplace(*command);
   command->add_option("project", arguments->project, "Project file")->required();
   command->add_option("--frame", arguments->frame, "Name, or index from 0")->required();
   command->add_option("-o,--output", arguments->output, "PNG to write")->required();
