@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -277,8 +278,13 @@ void BatchMaker::fill(RecordColumns& columns, std::size_t count, PointBatch& bat
     forValues(of(Intensity), count, [&](std::size_t i, double value) { batch.intensity[i] = to16((value - range.minimum) * factor); });
   }
   if (has(Class)) fillWhole(of(Class), count, 0, batch.classification);
-  if (has(ReturnIndex)) fillWhole(of(ReturnIndex), count, 1, batch.returnNumber);  // the file counts from 0
-  if (has(ReturnCount)) fillWhole(of(ReturnCount), count, 0, batch.returnCount);
+  if (has(ReturnIndex)) fillWhole(of(ReturnIndex), count, 1, batch.returnNumber);  // the file counts from 0 …
+  if (has(ReturnCount)) {
+    fillWhole(of(ReturnCount), count, 0, batch.returnCount);
+    // … or should: las2e57 counts from 1.
+    for (std::size_t i = 0; i < batch.returnNumber.size(); ++i)
+      if (batch.returnCount[i] > 0) batch.returnNumber[i] = std::min(batch.returnNumber[i], batch.returnCount[i]);
+  }
   if (has(Source)) fillWhole(of(Source), count, 0, batch.pointSource);
   if (hasGrid()) {
     fillWhole(of(Row), count, m_scan->rowBounds ? -static_cast<double>(m_scan->rowBounds->first) : 0.0, batch.row);

@@ -140,6 +140,8 @@ void RecordReader::decode(std::size_t count, RecordColumns& columns) {
     const E57Field& field = m_scan->fields[i];
     FieldColumn& column = columns[i];
     BitStream& stream = m_streams[i];
+    column.real.clear();
+    column.whole.clear();
     if (field.kind == E57Field::Kind::String) continue;
     const std::byte* from = stream.data() + stream.position() / 8;  // floats always stand on whole bytes
     if (field.kind == E57Field::Kind::Single) {
@@ -159,6 +161,7 @@ void RecordReader::decode(std::size_t count, RecordColumns& columns) {
         column.real.resize(count);
         for (std::size_t k = 0; k < count; ++k)
           column.real[k] = static_cast<double>(column.whole[k]) * field.scale + field.offset;
+        column.whole.clear();
       }
     }
     stream.skip(m_bits[i] * count);

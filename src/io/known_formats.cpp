@@ -26,7 +26,6 @@ constexpr std::string_view kAsPicture = "Develop it to TIFF, PNG or JPEG without
 
 // By content first: an ending says what somebody called the file, not what it is.
 constexpr KnownFormat kFormats[] = {
-    {"ASTM E57 scan", kAsLas, "ASTM-E57", ""},
     {"Bundler model", kAsColmap, "# Bundle file", ""},
     {"AutoCAD drawing (DWG)", kAsIfc, "AC10", "dwg"},
     {"PTX scan", kAsLas, "", "ptx"},
