@@ -19,6 +19,9 @@ struct SelectedRange {
   std::uint64_t first = 0;
   std::uint32_t count = 0;
   double spacing = 0;  ///< metres between neighbours on the surface as drawn (levels above left out)
+  /// What to draw instead of the store's own points: `count` copies, recoloured or filtered (see
+  /// cloud/point_styler.h, which owns them); null for the store's own.
+  const DisplayPoint* styled = nullptr;
 };
 
 struct Selection {

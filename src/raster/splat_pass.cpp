@@ -196,7 +196,7 @@ SplatRun makeRun(const PointStore& store, const SelectedRange& range, const Rigi
   // Eye first, then rotate: the large coordinates cancel before anything is multiplied by them.
   const glm::dvec3 origin = rotation * (node.origin - cameraFromWorld.centre());
   SplatRun run;
-  run.points = store.points().data() + range.first;
+  run.points = range.styled ? range.styled : store.points().data() + range.first;
   run.count = range.count;
   run.view = base;
   for (int row = 0; row < 3; ++row) {
