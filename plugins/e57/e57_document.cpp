@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <set>
 
 #include <fmt/format.h>
 #include <pugixml.hpp>
@@ -24,6 +25,7 @@ const std::string kAdvice = "Export the scan again, or convert it to LAS with an
 // A DOM takes some ten times the text; the largest of real files are a few megabytes.
 constexpr std::uint64_t kMaxXml = std::uint64_t(64) << 20;
 constexpr std::size_t kMaxScans = 65535;  // PointBatch::scanner
+constexpr std::size_t kMaxImages = 100000;
 constexpr std::size_t kMaxFields = 1024;
 constexpr int kMaxDepth = 16;
 
@@ -230,10 +232,14 @@ Result<E57Document> readE57Document(const PagedFile& file) {
     }
     document.scans.push_back(std::move(*scan));
   }
+  std::set<std::string> names;
   for (const pugi::xml_node node : root.child("images2D").children()) {
     if (node.type() != pugi::node_element) continue;
     auto image = e57ImageOf(node, document.images.size());
     if (!image) return fail(image.error().in(fmt::format("{}, picture {}", file.path(), document.images.size() + 1)));
+    if (document.images.size() >= kMaxImages) return fail(fmt::format("The file has more than {} pictures", kMaxImages), file.path(), kAdvice);
+    // Poses find their pictures by name.
+    if (!names.insert(image->name).second) image->name += fmt::format(" ({})", document.images.size() + 1);
     document.images.push_back(std::move(*image));
   }
   return document;

@@ -76,6 +76,8 @@ Result<RigidTransform> poseOf(const pugi::xml_node& node) {
   if (!part(translation, "x", pose.translation.x) || !part(translation, "y", pose.translation.y) ||
       !part(translation, "z", pose.translation.z))
     return fail("A pose's translation holds what is no number");
+  for (int axis = 0; axis < 3; ++axis)
+    if (std::abs(pose.translation[axis]) > 1e12) return fail("A pose's translation reaches beyond 1e12 m");
   return pose;
 }
 

@@ -3,6 +3,7 @@
 
 #include <QObject>
 
+#include "e57/e57_image_readers.h"
 #include "e57/e57_reader.h"
 #include "plugin_api/reader_plugin.h"
 
@@ -17,6 +18,8 @@ class E57Plugin : public QObject, public ReaderPlugin {
   std::vector<std::unique_ptr<Reader>> readers() const override {
     std::vector<std::unique_ptr<Reader>> all;
     all.push_back(std::make_unique<E57Reader>());
+    all.push_back(std::make_unique<E57CameraReader>());
+    all.push_back(std::make_unique<E57PictureReader>());
     return all;
   }
 };

@@ -21,8 +21,27 @@ constexpr double kMaxPixelsPerByte = 10000.0;
 constexpr std::int64_t kAlwaysAllowedPixels = std::int64_t(4) << 20;
 constexpr std::int64_t kMaxPixels = std::int64_t(1) << 29;
 
-bool readInto(const InputFile& file, std::uint64_t offset, std::span<unsigned char> bytes) {
-  return file.readAt(offset, std::as_writable_bytes(bytes)).has_value();
+/// A picture file, or one that stands inside another file and was read into memory.
+class PictureBytes {
+ public:
+  explicit PictureBytes(const InputFile& file) : m_file(&file) {}
+  explicit PictureBytes(std::span<const std::byte> memory) : m_memory(memory) {}
+
+  std::uint64_t size() const { return m_file ? m_file->size() : m_memory.size(); }
+  bool readAt(std::uint64_t offset, std::span<std::byte> into) const {
+    if (m_file) return m_file->readAt(offset, into).has_value();
+    if (offset > m_memory.size() || into.size() > m_memory.size() - offset) return false;
+    std::memcpy(into.data(), m_memory.data() + offset, into.size());
+    return true;
+  }
+
+ private:
+  const InputFile* m_file = nullptr;
+  std::span<const std::byte> m_memory;
+};
+
+bool readInto(const PictureBytes& file, std::uint64_t offset, std::span<unsigned char> bytes) {
+  return file.readAt(offset, std::as_writable_bytes(bytes));
 }
 
 std::uint64_t bigEndian(std::span<const unsigned char> bytes) {
@@ -39,14 +58,14 @@ std::uint64_t littleEndian(std::span<const unsigned char> bytes) {
 
 using Size = std::array<std::int64_t, 2>;
 
-std::optional<Size> pngSize(const InputFile& file) {
+std::optional<Size> pngSize(const PictureBytes& file) {
   std::array<unsigned char, 16> b{};
   if (!readInto(file, 8, b) || std::memcmp(b.data() + 4, "IHDR", 4) != 0) return std::nullopt;
   const std::span<const unsigned char> all(b);
   return Size{std::int64_t(bigEndian(all.subspan(8, 4))), std::int64_t(bigEndian(all.subspan(12, 4)))};
 }
 
-std::optional<Size> bmpSize(const InputFile& file) {
+std::optional<Size> bmpSize(const PictureBytes& file) {
   std::array<unsigned char, 12> b{};
   if (!readInto(file, 14, b)) return std::nullopt;
   const std::span<const unsigned char> all(b);
@@ -56,7 +75,7 @@ std::optional<Size> bmpSize(const InputFile& file) {
   return Size{static_cast<std::int32_t>(littleEndian(all.subspan(4, 4))), height < 0 ? -std::int64_t(height) : height};
 }
 
-std::optional<Size> webpSize(const InputFile& file) {
+std::optional<Size> webpSize(const PictureBytes& file) {
   std::array<unsigned char, 18> b{};
   if (!readInto(file, 12, b)) return std::nullopt;
   const std::span<const unsigned char> all(b);
@@ -71,7 +90,7 @@ std::optional<Size> webpSize(const InputFile& file) {
 }
 
 /// First directory of a classic or big TIFF: tags 256 (width) and 257 (height).
-std::optional<Size> tiffSize(const InputFile& file) {
+std::optional<Size> tiffSize(const PictureBytes& file) {
   std::array<unsigned char, 16> head{};
   if (!readInto(file, 0, std::span(head).first(8))) return std::nullopt;
   const bool little = head[0] == 'I';
@@ -98,7 +117,7 @@ std::optional<Size> tiffSize(const InputFile& file) {
 /// Walks the segments of a JPEG (ITU-T T.81, annex B) and calls `visit(marker, offset, length)` with
 /// the payload of each; stops where it returns false or at the first entropy-coded data.
 template <class Visit>
-std::optional<std::uint64_t> walkJpegSegments(const InputFile& file, std::uint64_t at, Visit&& visit) {
+std::optional<std::uint64_t> walkJpegSegments(const PictureBytes& file, std::uint64_t at, Visit&& visit) {
   std::array<unsigned char, 4> b{};
   while (readInto(file, at, std::span(b).first(2))) {
     if (b[0] != 0xff) return std::nullopt;
@@ -122,7 +141,7 @@ std::optional<std::uint64_t> walkJpegSegments(const InputFile& file, std::uint64
   return std::nullopt;
 }
 
-std::optional<Size> jpegSize(const InputFile& file) {
+std::optional<Size> jpegSize(const PictureBytes& file) {
   std::optional<Size> size;
   walkJpegSegments(file, 2, [&](unsigned marker, std::uint64_t offset, std::uint64_t length) {
     const bool startOfFrame = marker >= 0xc0 && marker <= 0xcf && marker != 0xc4 && marker != 0xc8 && marker != 0xcc;
@@ -136,7 +155,7 @@ std::optional<Size> jpegSize(const InputFile& file) {
 }
 
 /// From entropy-coded data at `at` to the next true marker; nothing where the file ends first.
-std::optional<std::uint64_t> endOfEntropyData(const InputFile& file, std::uint64_t at) {
+std::optional<std::uint64_t> endOfEntropyData(const PictureBytes& file, std::uint64_t at) {
   std::vector<unsigned char> block(std::size_t(1) << 18);
   while (at + 1 < file.size()) {
     const std::size_t count = static_cast<std::size_t>(std::min<std::uint64_t>(block.size(), file.size() - at));
@@ -155,7 +174,7 @@ std::optional<std::uint64_t> endOfEntropyData(const InputFile& file, std::uint64
   return std::nullopt;
 }
 
-bool jpegReachesItsEnd(const InputFile& file) {
+bool jpegReachesItsEnd(const PictureBytes& file) {
   bool ended = false;
   std::optional<std::uint64_t> at = 2;
   while (at && !ended) {
@@ -200,23 +219,23 @@ bool isPictureExtension(std::string_view extension) {
   return std::find(known.begin(), known.end(), extension) != known.end();
 }
 
-Result<PictureHeader> readPictureHeader(const std::string& path) {
-  const auto file = InputFile::open(path);
-  if (!file) return fail(file.error());
-  if (file->size() == 0) return fail("The picture file is empty", path, "Copy the file again");
+namespace {
+
+Result<PictureHeader> headerOf(const PictureBytes& file, const std::string& path) {
+  if (file.size() == 0) return fail("The picture file is empty", path, "Copy the file again");
   std::array<unsigned char, 12> head{};
-  const auto headBytes = static_cast<std::size_t>(std::min<std::uint64_t>(head.size(), file->size()));
-  if (!readInto(*file, 0, std::span(head).first(headBytes))) return fail("The picture cannot be read", path, "Check the disk");
+  const auto headBytes = static_cast<std::size_t>(std::min<std::uint64_t>(head.size(), file.size()));
+  if (!readInto(file, 0, std::span(head).first(headBytes))) return fail("The picture cannot be read", path, "Check the disk");
 
   PictureHeader header;
   header.format = pictureFormatOf(std::as_bytes(std::span(head)).first(headBytes));
   std::optional<Size> size;
   switch (header.format) {
-    case PictureFormat::Png: size = pngSize(*file); break;
-    case PictureFormat::Jpeg: size = jpegSize(*file); break;
-    case PictureFormat::Tiff: size = tiffSize(*file); break;
-    case PictureFormat::Bmp: size = bmpSize(*file); break;
-    case PictureFormat::WebP: size = webpSize(*file); break;
+    case PictureFormat::Png: size = pngSize(file); break;
+    case PictureFormat::Jpeg: size = jpegSize(file); break;
+    case PictureFormat::Tiff: size = tiffSize(file); break;
+    case PictureFormat::Bmp: size = bmpSize(file); break;
+    case PictureFormat::WebP: size = webpSize(file); break;
     case PictureFormat::None:
       return fail("The file is no picture that can be read", path, "Save it as PNG, JPEG, TIFF, BMP or WebP");
   }
@@ -227,21 +246,41 @@ Result<PictureHeader> readPictureHeader(const std::string& path) {
   if (width < 1 || height < 1 || width > 1 << 20 || height > 1 << 20 || width * height > kMaxPixels)
     return fail("The " + format + " header says " + words + ", which is not read", path,
                 "At most 536 million pixels are read: export a smaller picture");
-  if (width * height > kAlwaysAllowedPixels && double(width * height) > kMaxPixelsPerByte * double(file->size()))
+  if (width * height > kAlwaysAllowedPixels && double(width * height) > kMaxPixelsPerByte * double(file.size()))
     return fail("The " + format + " header promises " + words + ", the file holds only " +
-                    std::to_string(file->size()) + " bytes", path, "The file is damaged: copy it again");
+                    std::to_string(file.size()) + " bytes", path, "The file is damaged: copy it again");
   header.width = static_cast<int>(width);
   header.height = static_cast<int>(height);
   return header;
+}
+
+Result<void> completenessOf(const PictureBytes& file, const std::string& path, const PictureHeader& header) {
+  if (header.format == PictureFormat::Jpeg && !jpegReachesItsEnd(file))
+    return fail("The JPEG is cut off or damaged: its end marker is missing", path, "Copy the file again");
+  return {};
+}
+
+}  // namespace
+
+Result<PictureHeader> readPictureHeader(const std::string& path) {
+  const auto file = InputFile::open(path);
+  if (!file) return fail(file.error());
+  return headerOf(PictureBytes(*file), path);
+}
+
+Result<PictureHeader> pictureHeaderOf(std::span<const std::byte> bytes, const std::string& where) {
+  return headerOf(PictureBytes(bytes), where);
 }
 
 Result<void> checkPictureComplete(const std::string& path, const PictureHeader& header) {
   if (header.format != PictureFormat::Jpeg) return {};
   const auto file = InputFile::open(path);
   if (!file) return fail(file.error());
-  if (!jpegReachesItsEnd(*file))
-    return fail("The JPEG is cut off or damaged: its end marker is missing", path, "Copy the file again");
-  return {};
+  return completenessOf(PictureBytes(*file), path, header);
+}
+
+Result<void> checkPictureComplete(std::span<const std::byte> bytes, const std::string& where, const PictureHeader& header) {
+  return completenessOf(PictureBytes(bytes), where, header);
 }
 
 ColourImage colourImageFrom(const RawPicture& raw) {

@@ -34,10 +34,13 @@ struct PictureHeader {
 /// Format and size from the header alone. Error where the file is no picture, is cut off, or
 /// promises more pixels than any coding could keep in a file of its size.
 Result<PictureHeader> readPictureHeader(const std::string& path);
+/// The same for a picture that stands inside another file; `where` names it in errors.
+Result<PictureHeader> pictureHeaderOf(std::span<const std::byte> bytes, const std::string& where);
 
 /// Decoders paint the missing part of a cut-off JPEG gray and call it success: this walks the
 /// segments up to the end-of-image marker. True for other formats, whose decoders notice.
 Result<void> checkPictureComplete(const std::string& path, const PictureHeader& header);
+Result<void> checkPictureComplete(std::span<const std::byte> bytes, const std::string& where, const PictureHeader& header);
 
 /// Decoded samples as a library hands them over: interleaved rows, 8 or 16 bits, blue first.
 struct RawPicture {

@@ -126,7 +126,7 @@ struct PictureInfo {
 };
 
 struct PictureSetInfo {
-  bool isVideo = false;
+  bool isVideo = false;        ///< the pictures are no files of their own: a video, or a scan that carries them
   int width = 0, height = 0;   ///< of the first picture
   double framesPerSecond = 0;  ///< 0 for a folder of pictures
   std::vector<PictureInfo> pictures;

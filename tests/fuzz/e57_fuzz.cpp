@@ -6,6 +6,8 @@
 #include <string>
 
 #include "e57/crc32c.h"
+#include "e57/e57_image_readers.h"
+#include "fuzz/camera_fuzzing.h"
 #include "fuzz/scan_fuzzing.h"
 
 namespace {
@@ -19,11 +21,22 @@ std::string withChecksums(std::string file) {
   return file;
 }
 
+void fuzzPictures(const std::string& bytes) {
+  const int descriptor = ::memfd_create("fuzz", 0);
+  if (descriptor < 0 || ::write(descriptor, bytes.data(), bytes.size()) != static_cast<ssize_t>(bytes.size())) std::abort();
+  const std::string path = "/proc/self/fd/" + std::to_string(descriptor);
+  alidade::testing::checkCameraSet(alidade::E57CameraReader().inspect(path), bytes.size());
+  if (const auto source = alidade::E57PictureReader().open(path))
+    if (const auto picture = (*source)->picture(0); !picture && picture.error().what.empty()) std::abort();
+  ::close(descriptor);
+}
+
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   alidade::testing::fuzzScanReader(alidade::E57Reader(), data, size);
   const std::string mended = withChecksums(std::string(reinterpret_cast<const char*>(data), size));
   alidade::testing::fuzzScanReader(alidade::E57Reader(), reinterpret_cast<const std::uint8_t*>(mended.data()), mended.size());
+  fuzzPictures(mended);
   return 0;
 }
