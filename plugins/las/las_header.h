@@ -10,8 +10,9 @@
 #include <vector>
 
 #include "base/error.h"
-#include "base/input_file.h"
 #include "geometry/bounds.h"
+#include "las/byte_source.h"
+#include "las/laz_layout.h"
 #include "plugin_api/reader.h"
 
 namespace alidade {
@@ -30,9 +31,16 @@ T lasValue(const std::byte* record, std::size_t offset) {
 struct LasExtraBytes {
   std::string name;
   int type = 0;            ///< 1..10: u8 i8 u16 i16 u32 i32 u64 i64 f32 f64; 0: undocumented
+  int components = 1;      ///< numbers of that type
   std::uint32_t offset = 0;  ///< within the point record, bytes
   std::uint32_t size = 0;    ///< bytes
   bool scaled = false;     ///< has a scale or an offset of its own
+};
+
+/// A scanner's set-up as our own record gives it (las_stations.h).
+struct LasStation {
+  Station station;
+  std::uint16_t pointSource = 0;  ///< of its points
 };
 
 /// All that is known of a LAS file before its points are read.
@@ -51,19 +59,24 @@ struct LasHeader {
   Bounds bounds;  ///< empty where the header's are no bounds
   std::uint64_t evlrOffset = 0;
   std::uint32_t evlrCount = 0;
+  std::optional<LazLayout> laz;  ///< where the points are compressed
 
   std::string crs;          ///< WKT, "EPSG:n" or empty
   std::string crsNote;      ///< vertical system and the like, for `details`
   std::vector<LasExtraBytes> extras;
+  std::vector<LasStation> stations;
   std::vector<ImportWarning> warnings;
 
   bool hasGpsTime() const;
   bool hasRgb() const;
   bool hasWaveforms() const;
+  bool hasNir() const;
   /// Bytes into the record where red, green and blue stand; valid where hasRgb().
   std::uint32_t rgbOffset() const;
   /// Bytes into the record where the GPS time stands; valid where hasGpsTime().
   std::uint32_t gpsTimeOffset() const;
+  /// Bytes into the record where the wave packet stands; valid where hasWaveforms().
+  std::uint32_t wavePacketOffset() const;
   const LasExtraBytes* extra(const std::string& lowerCaseName) const;
   std::string details() const;
 };
@@ -72,6 +85,6 @@ struct LasHeader {
 std::uint16_t lasRecordLength(int pointFormat);
 
 /// Reads header, VLRs and EVLRs and checks them against the file's size.
-Result<LasHeader> readLasHeader(const InputFile& file);
+Result<LasHeader> readLasHeader(const ByteSource& file);
 
 }  // namespace alidade

@@ -8,16 +8,25 @@
 
 namespace alidade {
 
-/// True where the colours are 8-bit numbers stored without the shift that the standard asks for: no
-/// channel of any point exceeds 255, and some are not 0. A sample over the file settles the usual
-/// case; only a file that looks unshifted is looked through to the end.
-Result<bool> lasColoursAreUnshifted(const InputFile& file, const LasHeader& header, const Progress& progress);
+/// The largest colour number among the records; 0 where the format has no colours.
+std::uint16_t largestLasColour(const LasHeader& header, const std::byte* records, std::size_t count);
 
-/// Fills the batch from `count` point records. The batch's columns are reused between calls.
+/// Fills an empty batch from point records: every field, bit for bit. What PointBatch has no place for
+/// comes as extra columns:
+///
+/// - "scan_flags" u8: bits 0-3 synthetic, key point, withheld, overlap; 4-5 scanner channel; 6 scan direction;
+///   7 edge of flight line. The older formats' flags are put where the formats 6-10 have them.
+/// - "scan_angle_rank" i8, degrees (formats 0-5); "scan_angle" i16, 0.006 degrees (6-10).
+/// - "user_data" u8; "nir" u16 (8, 10); "wave_packet" 29 u8 (4, 5, 9, 10).
+/// - Every extra byte by its own name; those that no record describes as "extra_bytes" u8.
+///
+/// Extra bytes named "row", "column" and "scanner" (any case, unscaled integers of up to 32, 32 and 16
+/// bits) fill the columns of those names instead. Without "scanner", the point source ID gives it where the file names
+/// its stations.
 void decodeLasPoints(const LasHeader& header, const std::byte* records, std::size_t count, bool unshiftedColours,
                      PointBatch& batch);
 
-/// How many points are read at a time.
-std::size_t lasBatchSize(const LasHeader& header);
+/// What decodeLasPoints fills, as ScanInfo::attributes names it.
+std::vector<std::string> lasAttributes(const LasHeader& header);
 
 }  // namespace alidade

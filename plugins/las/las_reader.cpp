@@ -10,6 +10,7 @@
 
 #include "las/las_header.h"
 #include "las/las_points.h"
+#include "las/las_runs.h"
 
 namespace alidade {
 
@@ -28,6 +29,60 @@ void checkBounds(LasHeader& header, const Bounds& found) {
                                "header offset 179"});
 }
 
+/// A batch and its bounds, made on any thread.
+struct MadeBatch {
+  MadeBatch(const LasHeader& header, const std::byte* records, std::size_t count, bool unshifted) {
+    decodeLasPoints(header, records, count, unshifted, batch);
+    for (const auto& position : batch.position) bounds.add(position);
+  }
+  PointBatch batch;
+  Bounds bounds;
+};
+
+std::string readingWords(const std::string& path) {
+  return "Reading " + std::filesystem::path(path).filename().string();
+}
+
+/// Of the runs' points, or the first found that exceeds eight bits.
+Result<std::uint16_t> largestColour(const ByteSource& file, const LasHeader& header, const std::vector<LasRun>& runs,
+                                    const Progress& progress) {
+  std::uint16_t overall = 0;
+  if (!header.hasRgb()) return overall;
+  const MakeBatch make = [&](const std::byte* records, std::size_t count) -> std::function<bool()> {
+    return [&overall, largest = largestLasColour(header, records, count)] {
+      overall = std::max(overall, largest);
+      return overall <= 255;
+    };
+  };
+  if (auto ok = readRuns(file, header, runs, make, progress, "Checking colours"); !ok) return fail(ok.error());
+  return overall;
+}
+
+/// True where the colours are 8-bit numbers stored without the shift that the standard asks for: no
+/// channel of any point exceeds 255, and some are not 0. A sample over the file settles the usual
+/// case; only a file that looks unshifted is looked through to the end.
+Result<bool> coloursAreUnshifted(const ByteSource& file, const LasHeader& header, const Progress& progress) {
+  if (!header.hasRgb() || header.pointCount == 0) return false;
+  const auto runs = runsOf(file, header);
+  if (!runs) return fail(runs.error());
+  if (!*runs) {
+    std::uint16_t overall = 0;
+    const MakeBatch make = [&](const std::byte* records, std::size_t count) -> std::function<bool()> {
+      overall = std::max(overall, largestLasColour(header, records, count));
+      return [&overall] { return overall <= 255; };
+    };
+    if (auto ok = readWithoutTable(file, header, make, progress, "Checking colours"); !ok) return fail(ok.error());
+    return overall > 0 && overall <= 255;
+  }
+  constexpr std::uint64_t kSample = 10000;
+  const auto sampled = largestColour(file, header, sampleOf(**runs, header, kSample), progress.part(0.0, 0.1));
+  if (!sampled) return fail(sampled.error());
+  if (*sampled > 255) return false;
+  const auto all = largestColour(file, header, **runs, progress.part(0.1, 1.0));
+  if (!all) return fail(all.error());
+  return *all > 0 && *all <= 255;
+}
+
 }  // namespace
 
 ReaderDescription LasReader::description() const {
@@ -42,9 +97,9 @@ int LasReader::sniff(const FileProbe& probe) const {
 }
 
 Result<ScanInfo> LasReader::inspect(const std::string& path) const {
-  const auto file = InputFile::open(path);
+  const auto file = ByteSource::open(path);
   if (!file) return fail(file.error());
-  const auto header = readLasHeader(*file);
+  const auto header = readLasHeader(**file);
   if (!header) return fail(header.error());
   ScanInfo info;
   info.pointCount = header->pointCount;
@@ -52,12 +107,8 @@ Result<ScanInfo> LasReader::inspect(const std::string& path) const {
   info.crs = header->crs;
   info.scale = header->scale;
   info.offset = header->offset;
-  if (header->hasRgb()) info.attributes.push_back("rgb");
-  info.attributes.insert(info.attributes.end(), {"intensity", "classification", "return_number"});
-  if (header->hasGpsTime()) info.attributes.push_back("gps_time");
-  info.attributes.push_back("point_source_id");
-  for (const auto& extra : header->extras)
-    if (!extra.name.empty()) info.attributes.push_back(extra.name);
+  info.attributes = lasAttributes(*header);
+  for (const LasStation& each : header->stations) info.stations.push_back(each.station);
   info.details = header->details();
   return info;
 }
@@ -65,36 +116,50 @@ Result<ScanInfo> LasReader::inspect(const std::string& path) const {
 Result<std::vector<ImportWarning>> LasReader::read(const std::string& path,
                                                    const BatchSink& sink,
                                                    const Progress& progress) const {
-  const auto file = InputFile::open(path);
+  const auto file = ByteSource::open(path);
   if (!file) return fail(file.error());
-  auto header = readLasHeader(*file);
+  auto header = readLasHeader(**file);
   if (!header) return fail(header.error());
-  const auto unshifted = lasColoursAreUnshifted(*file, *header, progress.part(0.0, 0.1));
+  const auto unshifted = coloursAreUnshifted(**file, *header, progress.part(0.0, 0.1));
   if (!unshifted) return fail(unshifted.error());
   if (*unshifted)
     header->warnings.push_back({"Colours are stored as 8-bit numbers, against the standard; they are used as such",
                                 "points"});
 
-  const std::string what = "Reading " + std::filesystem::path(path).filename().string();
-  const std::uint64_t batchSize = lasBatchSize(*header);
-  std::vector<std::byte> bytes(std::min(batchSize, header->pointCount) * header->recordLength);
-  const Progress reading = progress.part(0.1, 1.0);
-  PointBatch batch;
   Bounds found;
-  for (std::uint64_t first = 0; first < header->pointCount; first += batchSize) {
-    if (progress.cancelled()) return fail(cancelledError());
-    reading.report(static_cast<double>(first) / static_cast<double>(header->pointCount), what);
-    const std::uint64_t count = std::min(batchSize, header->pointCount - first);
-    const auto part = std::span(bytes).first(count * header->recordLength);
-    if (auto ok = file->readAt(header->pointsOffset + first * header->recordLength, part); !ok)
-      return fail(ok.error());
-    decodeLasPoints(*header, part.data(), count, *unshifted, batch);
-    for (const auto& position : batch.position) found.add(position);
-    if (!sink(batch)) break;
-  }
+  const MakeBatch make = [&](const std::byte* records, std::size_t count) -> std::function<bool()> {
+    auto made = std::make_shared<MadeBatch>(*header, records, count, *unshifted);
+    return [made = std::move(made), &found, &sink] {
+      found.add(made->bounds);
+      return sink(made->batch);
+    };
+  };
+  if (auto ok = readAllPoints(**file, *header, make, progress.part(0.1, 1.0), readingWords(path)); !ok)
+    return fail(ok.error());
   checkBounds(*header, found);
-  reading.report(1.0, what);
   return header->warnings;
+}
+
+Result<void> LasReader::sample(const std::string& path, std::uint64_t wanted, const BatchSink& sink,
+                               const Progress& progress) const {
+  const auto file = ByteSource::open(path);
+  if (!file) return fail(file.error());
+  const auto header = readLasHeader(**file);
+  if (!header) return fail(header.error());
+  if (header->pointCount == 0 || wanted == 0) return {};
+  const auto runs = runsOf(**file, *header);
+  if (!runs) return fail(runs.error());
+  if (!*runs) return ScanReader::sample(path, wanted, sink, progress);
+  const auto some = sampleOf(**runs, *header, wanted);
+  // What the sample shows of the colours decides: a first picture shall not wait for the whole file.
+  const auto largest = largestColour(**file, *header, some, Progress());
+  if (!largest) return fail(largest.error());
+  const bool unshifted = *largest > 0 && *largest <= 255;
+  const MakeBatch make = [&](const std::byte* records, std::size_t count) -> std::function<bool()> {
+    auto made = std::make_shared<MadeBatch>(*header, records, count, unshifted);
+    return [made = std::move(made), &sink] { return sink(made->batch); };
+  };
+  return readRuns(**file, *header, some, make, progress, readingWords(path));
 }
 
 }  // namespace alidade

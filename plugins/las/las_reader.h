@@ -7,15 +7,15 @@
 
 namespace alidade {
 
-/// Uncompressed LAS 1.0 to 1.4, point formats 0-10 (waveforms of 4, 5, 9 and 10 are passed over).
+/// LAS 1.0 to 1.4 and LAZ of every kind (in one piece, in chunks, in layers), point formats 0-10.
 ///
-/// Coordinates are `scale * integer + offset` in double. Extra bytes named "row", "column" and
-/// "scanner" fill the columns of those names; without "scanner" the point source ID does. Colours
+/// Coordinates are `scale * integer + offset` in double; las_points.h says where every other field goes. Colours
 /// are 16 bits a channel in the standard; a file whose colours never exceed 255 stored 8 bits.
 ///
 /// Malformed input: refused where points would be wrong or missing (truncated, counts past the end,
-/// impossible scale or record length); repaired with a warning where only a description suffers
-/// (bad VLRs, bad bounds, a disagreeing legacy count). LAZ is refused by name.
+/// impossible scale or record length, chunks that end early); repaired with a warning where only a description suffers
+/// (bad VLRs, bad bounds, a disagreeing legacy count). A compressed file whose chunk table is missing
+/// is decoded from its start.
 class LasReader : public ScanReader {
  public:
   ReaderDescription description() const override;
@@ -24,6 +24,9 @@ class LasReader : public ScanReader {
   Result<std::vector<ImportWarning>> read(const std::string& path,
                                           const BatchSink& sink,
                                           const Progress& progress) const override;
+  /// Short blocks of a LAS file, the beginnings of a LAZ file's chunks.
+  Result<void> sample(const std::string& path, std::uint64_t wanted, const BatchSink& sink,
+                      const Progress& progress) const override;
 };
 
 }  // namespace alidade

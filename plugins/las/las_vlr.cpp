@@ -53,7 +53,8 @@ void readExtraBytes(const std::vector<std::byte>& payload, LasHeader& header) {
     } else if (type <= 30) {
       // 11-20 and 21-30 are the deprecated pairs and triples of 1-10.
       extra.size = sizes[(type - 1) % 10 + 1] * ((type - 1) / 10 + 1);
-      extra.type = type <= 10 ? type : 0;
+      extra.type = (type - 1) % 10 + 1;
+      extra.components = (type - 1) / 10 + 1;
       extra.scaled = (options & 0x18) != 0;
     } else {
       header.warnings.push_back(
@@ -130,13 +131,13 @@ void decideCrs(const CrsRecords& records, LasHeader& header) {
     header.warnings.push_back({"The header announces a WKT coordinate system, only GeoTIFF keys are there", "header"});
 }
 
-Result<void> takeRecord(const InputFile& file, const std::string& userId, int recordId, std::uint64_t payloadAt,
+Result<void> takeRecord(const ByteSource& file, const std::string& userId, int recordId, std::uint64_t payloadAt,
                         std::uint64_t length, CrsRecords& records, LasHeader& header) {
-  if (userId == "laszip encoded" && recordId == 22204) return fail(lazRefusal(file.path()));
   const bool wkt = userId == "LASF_Projection" && recordId == 2112;
   const bool geoKeys = userId == "LASF_Projection" && recordId == 34735;
   const bool extra = userId == "LASF_Spec" && recordId == 4;
-  if (!wkt && !geoKeys && !extra) return {};
+  const bool laz = userId == "laszip encoded" && recordId == 22204;
+  if (!wkt && !geoKeys && !extra && !laz) return {};
   if (length > kLongestPayload) {
     header.warnings.push_back({fmt::format("Record {} of {} is {} bytes long; it is ignored", recordId, userId, length),
                                fmt::format("offset {}", payloadAt)});
@@ -144,6 +145,11 @@ Result<void> takeRecord(const InputFile& file, const std::string& userId, int re
   }
   std::vector<std::byte> payload(length);
   if (auto ok = file.readAt(payloadAt, payload); !ok) return fail(ok.error());
+  if (laz) {
+    auto layout = parseLazRecord(payload, file.path());
+    if (!layout) return fail(layout.error());
+    header.laz = std::move(*layout);
+  }
   if (wkt) records.wkt = wktOf(payload);
   if (geoKeys) {
     records.geoKeys.resize(payload.size() / 2);
@@ -155,7 +161,7 @@ Result<void> takeRecord(const InputFile& file, const std::string& userId, int re
 }
 
 /// Both kinds of record: reserved u16, user ID 16, record ID u16, length u16 or u64, description 32.
-Result<void> walk(const InputFile& file, bool extended, std::uint64_t at, std::uint64_t end, std::uint32_t count,
+Result<void> walk(const ByteSource& file, bool extended, std::uint64_t at, std::uint64_t end, std::uint32_t count,
                   CrsRecords& records, LasHeader& header) {
   const std::uint64_t size = extended ? kEvlrHeader : kVlrHeader;
   const char* kind = extended ? "extended variable length record" : "variable length record";
@@ -183,17 +189,13 @@ Result<void> walk(const InputFile& file, bool extended, std::uint64_t at, std::u
 
 }  // namespace
 
-Error lazRefusal(const std::string& path) {
-  return Error{"This file is compressed (LAZ or COPC), which is not read yet", path,
-               "Decompress it to LAS with any LAZ tool, such as laszip, PDAL or las2las, and open the result"};
-}
-
-Result<void> readLasVlrs(const InputFile& file, LasHeader& header) {
+Result<void> readLasVlrs(const ByteSource& file, LasHeader& header) {
   CrsRecords records;
   auto ok = walk(file, false, header.headerSize, header.pointsOffset, header.vlrCount, records, header);
   if (!ok) return ok;
   if (header.evlrCount > 0) {
-    const std::uint64_t pointsEnd = header.pointsOffset + header.pointCount * header.recordLength;
+    const std::uint64_t pointsEnd =
+        header.laz ? header.pointsOffset : header.pointsOffset + header.pointCount * header.recordLength;
     if (header.evlrOffset < pointsEnd || header.evlrOffset > file.size()) {
       header.warnings.push_back({fmt::format("The extended records are said to start at byte {}, where they cannot; "
                                              "they are ignored",

@@ -8,11 +8,8 @@
 namespace alidade {
 
 /// Walks the variable length records behind the header and, from 1.4 on, the extended ones behind
-/// the points; fills crs, crsNote and extras. A record that lies about its length is a warning, and
-/// ends the walk. LAZ's record is an error that says what to do.
-Result<void> readLasVlrs(const InputFile& file, LasHeader& header);
-
-/// What a compressed file is told.
-Error lazRefusal(const std::string& path);
+/// the points; fills crs, crsNote, extras and laz. A record that lies about its length is a warning, and
+/// ends the walk. A LAZ record of an unknown kind is an error.
+Result<void> readLasVlrs(const ByteSource& file, LasHeader& header);
 
 }  // namespace alidade

@@ -125,21 +125,6 @@ TEST(LasRealFiles, TheSamePointsStandInEveryCoding) {
   }
 }
 
-TEST(LasRealFiles, CompressedFilesAreRefused) {
-  NEED_SHARED_DATA();
-  int refused = 0;
-  for (const char* folder : {"las", "copc"}) {
-    for (const auto& entry : fs::recursive_directory_iterator(kData / folder)) {
-      if (entry.path().extension() != ".laz") continue;
-      const auto info = LasReader().inspect(entry.path().string());
-      ASSERT_FALSE(info.has_value()) << entry.path();
-      EXPECT_THAT(info.error().text(), ::testing::HasSubstr("LAZ")) << entry.path();
-      ++refused;
-    }
-  }
-  EXPECT_GE(refused, 10);
-}
-
 TEST(LasRealFiles, TheWktBitDecidesInAFileWithBothSystems) {
   NEED_SHARED_DATA();
   const auto info = LasReader().inspect((kData / "las/laspy/file_with_both_wkt_and_geotiff_vlrs.las").string());

@@ -1,0 +1,507 @@
+// SPDX-FileCopyrightText: 2026 the Alidade authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#pragma once
+
+#include <cstdlib>
+#include <vector>
+
+#include "las/laz_coder.h"
+
+// The items that make up a point of the formats 0-5, as the LASzip specification codes them in version 2
+// (WAVEPACKET13: version 1, its only one). Every item holds its last value and its models; `code` follows the coder:
+// it reads the record when encoding and fills it when decoding. Records are those of LAS: little endian, packed.
+
+namespace alidade::laz {
+
+template <class T>
+T load(const std::byte* at) {
+  T value;
+  std::memcpy(&value, at, sizeof(T));
+  return value;
+}
+
+template <class T>
+void store(std::byte* at, T value) {
+  std::memcpy(at, &value, sizeof(T));
+}
+
+/// Differences of integers that wrap as the format's do.
+inline std::int32_t minus(std::int32_t a, std::int32_t b) {
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(a) - static_cast<std::uint32_t>(b));
+}
+inline std::int32_t plus(std::int32_t a, std::int32_t b) {
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(a) + static_cast<std::uint32_t>(b));
+}
+inline std::int32_t times(std::int32_t a, std::int32_t b) {
+  return static_cast<std::int32_t>(static_cast<std::uint32_t>(a) * static_cast<std::uint32_t>(b));
+}
+inline int clampToByte(int v) {
+  return std::clamp(v, 0, 255);
+}
+inline std::uint8_t byteAt(const std::byte* at) {
+  return std::to_integer<std::uint8_t>(*at);
+}
+
+/// The context that the k bits of other coordinates give.
+inline unsigned evenUpTo(unsigned k, unsigned most) {
+  return k < most ? k & ~1u : most;
+}
+
+/// A byte of the record by a model chosen by its last value.
+template <class Coder, int N>
+void codeByte(Coder& coder, LazyModels<256, N>& models, std::byte& last, const std::byte* at,
+              std::size_t field) {
+  std::uint8_t value = 0;
+  if constexpr (Coder::kEncodes) value = byteAt(at + field);
+  last = static_cast<std::byte>(coder.symbol(models[byteAt(&last)], value));
+}
+
+/// LAS 1.2 core record, 20 bytes: POINT10 version 2.
+class Point10 {
+ public:
+  static constexpr std::size_t kSize = 20;
+
+  void start(const std::byte* first) {
+    std::memcpy(m_last, first, kSize);
+    store<std::uint16_t>(m_last + 12, 0);
+    m_intensities.fill(0);
+    m_heights.fill(0);
+    m_xMedians.fill({});
+    m_yMedians.fill({});
+    renew(m_changed);
+    renew(m_intensity);
+    for (auto& model : m_scanAngle) renew(model);
+    renew(m_pointSource);
+    m_returns.reset();
+    m_classification.reset();
+    m_userData.reset();
+    renew(m_dx);
+    renew(m_dy);
+    renew(m_z);
+  }
+
+  /// Everything but the coordinates; `at` is the record.
+  template <class Coder>
+  void codeAttributes(Coder& coder, const std::byte* at) {
+    unsigned changed = 0;
+    if constexpr (Coder::kEncodes) {
+      const unsigned context = returnContext(byteAt(at + 14));
+      changed = (at[14] != m_last[14]) << 5 | (load<std::uint16_t>(at + 12) != m_intensities[context]) << 4 |
+                (at[15] != m_last[15]) << 3 | (at[16] != m_last[16]) << 2 | (at[17] != m_last[17]) << 1 |
+                (load<std::uint16_t>(at + 18) != load<std::uint16_t>(m_last + 18));
+    }
+    changed = coder.symbol(m_changed, changed);
+    if (changed & 32) codeByte(coder, m_returns, m_last[14], at, 14);
+    m_context = returnContext(byteAt(m_last + 14));
+    if (changed & 16) {
+      std::int32_t value = 0;
+      if constexpr (Coder::kEncodes) value = load<std::uint16_t>(at + 12);
+      m_intensities[m_context] = static_cast<std::uint16_t>(
+          codeInteger(coder, m_intensity, m_intensities[m_context], std::min(m_context, 3u), value));
+    }
+    store(m_last + 12, m_intensities[m_context]);
+    if (changed & 8) codeByte(coder, m_classification, m_last[15], at, 15);
+    if (changed & 4) {
+      std::uint8_t difference = 0;
+      if constexpr (Coder::kEncodes) difference = static_cast<std::uint8_t>(byteAt(at + 16) - byteAt(m_last + 16));
+      const unsigned direction = byteAt(m_last + 14) >> 6 & 1;
+      m_last[16] = static_cast<std::byte>(coder.symbol(m_scanAngle[direction], difference) + byteAt(m_last + 16));
+    }
+    if (changed & 2) codeByte(coder, m_userData, m_last[17], at, 17);
+    if (changed & 1) {
+      std::int32_t value = 0;
+      if constexpr (Coder::kEncodes) value = load<std::uint16_t>(at + 18);
+      store(m_last + 18, static_cast<std::uint16_t>(
+                             codeInteger(coder, m_pointSource, load<std::uint16_t>(m_last + 18), 0, value)));
+    }
+  }
+
+  template <class Coder>
+  void codeX(Coder& coder, const std::byte* at) {
+    codeDifference(coder, m_dx, m_xMedians[m_context], isSingle(), 0, at);
+  }
+
+  template <class Coder>
+  void codeY(Coder& coder, const std::byte* at) {
+    codeDifference(coder, m_dy, m_yMedians[m_context], isSingle() + evenUpTo(m_dx.k, 20), 4, at);
+  }
+
+  /// The last of a point.
+  template <class Coder>
+  void codeZ(Coder& coder, std::byte* at) {
+    std::int32_t value = 0;
+    if constexpr (Coder::kEncodes) value = load<std::int32_t>(at + 8);
+    const unsigned returns = byteAt(m_last + 14);
+    std::int32_t& height = m_heights[std::abs(static_cast<int>(returns >> 3 & 7) - static_cast<int>(returns & 7))];
+    height = codeInteger(coder, m_z, height, isSingle() + evenUpTo((m_dx.k + m_dy.k) / 2, 18), value);
+    store(m_last + 8, height);
+    if constexpr (!Coder::kEncodes) std::memcpy(at, m_last, kSize);
+  }
+
+ private:
+  template <class Coder, int Contexts>
+  void codeDifference(Coder& coder, IntegerModel<32, Contexts>& model, StreamingMedian& median, unsigned context,
+                      std::size_t field, const std::byte* at) {
+    const std::int32_t last = load<std::int32_t>(m_last + field);
+    std::int32_t difference = 0;
+    if constexpr (Coder::kEncodes) difference = minus(load<std::int32_t>(at + field), last);
+    difference = codeInteger(coder, model, median.get(), context, difference);
+    store(m_last + field, plus(last, difference));
+    median.add(difference);
+  }
+
+  unsigned isSingle() const { return (byteAt(m_last + 14) >> 3 & 7) == 1; }
+
+  /// Number of returns and return number as one context of 16; row: of how many, column: which.
+  static unsigned returnContext(unsigned returns) {
+    static constexpr std::uint8_t kMap[8][8] = {
+        {15, 14, 13, 12, 11, 10, 9, 8},  {14, 0, 1, 3, 6, 10, 10, 9},     {13, 1, 2, 4, 7, 11, 11, 10},
+        {12, 3, 4, 5, 8, 12, 12, 11},    {11, 6, 7, 8, 9, 13, 13, 12},    {10, 10, 11, 12, 13, 14, 14, 13},
+        {9, 10, 11, 12, 13, 14, 15, 14}, {8, 9, 10, 11, 12, 13, 14, 15}};
+    return kMap[returns >> 3 & 7][returns & 7];
+  }
+
+  alignas(8) std::byte m_last[kSize];
+  unsigned m_context = 0;
+  std::array<std::uint16_t, 16> m_intensities;
+  std::array<std::int32_t, 8> m_heights;
+  std::array<StreamingMedian, 16> m_xMedians, m_yMedians;
+  SymbolModel<64> m_changed;
+  IntegerModel<16, 4> m_intensity;
+  std::array<SymbolModel<256>, 2> m_scanAngle;
+  IntegerModel<16, 1> m_pointSource;
+  LazyModels<256, 256> m_returns, m_classification, m_userData;
+  IntegerModel<32, 2> m_dx;
+  IntegerModel<32, 22> m_dy;
+  IntegerModel<32, 20> m_z;
+};
+
+/// GPS time: GPSTIME11 version 2, and with Layered the time layer of POINT14 version 3, which leaves
+/// unchanged times to another flag. Four sequences run side by side; most times are a small multiple
+/// of their sequence's last difference farther on.
+template <bool Layered>
+class GpsTime {
+ public:
+  static constexpr std::size_t kSize = 8;
+
+  void start(const std::byte* first) { start(load<std::uint64_t>(first)); }
+  void start(std::uint64_t first) {
+    m_sequence = m_next = 0;
+    m_times = {first, 0, 0, 0};
+    m_differences = {};
+    m_extremes = {};
+    renew(m_multiple);
+    renew(m_still);
+    renew(m_numbers);
+  }
+
+  template <class Coder>
+  void code(Coder& coder, std::byte* at) {
+    if constexpr (Coder::kEncodes) {
+      encode(coder, load<std::uint64_t>(at));
+    } else {
+      decode(coder);
+      store(at, m_times[m_sequence]);
+    }
+  }
+
+ private:
+  static constexpr int kMost = 500, kLeast = -10;
+  // Symbols behind the multiples 0..500 and -1..-10.
+  static constexpr int kUnchanged = kMost - kLeast + 1;              // not Layered
+  static constexpr int kFull = kUnchanged + (Layered ? 0 : 1);       // then three: another sequence
+  // Symbols where the sequence has stood still.
+  static constexpr int kStillShort = Layered ? 0 : 1, kStillFull = kStillShort + 1;
+
+  std::int32_t& difference() { return m_differences[m_sequence]; }
+
+  /// A difference that no multiple fits is taken as the new one when it has come four times.
+  void noteExtreme(std::int32_t current) {
+    if (++m_extremes[m_sequence] > 3) {
+      difference() = current;
+      m_extremes[m_sequence] = 0;
+    }
+  }
+
+  template <class Coder>
+  void codeShort(Coder& coder, std::int32_t current) {
+    difference() = codeInteger(coder, m_numbers, 0, 0, current);
+    m_times[m_sequence] += static_cast<std::uint64_t>(std::int64_t{difference()});
+    m_extremes[m_sequence] = 0;
+  }
+
+  template <class Coder>
+  void codeFull(Coder& coder, std::uint64_t time) {
+    m_next = (m_next + 1) & 3;
+    const auto upper = static_cast<std::int32_t>(m_times[m_sequence] >> 32);
+    const auto high = static_cast<std::uint32_t>(
+        codeInteger(coder, m_numbers, upper, 8, static_cast<std::int32_t>(time >> 32)));
+    const auto low = coder.bits(32, static_cast<std::uint32_t>(time));
+    m_sequence = m_next;
+    m_times[m_sequence] = std::uint64_t{high} << 32 | low;
+    difference() = 0;
+    m_extremes[m_sequence] = 0;
+  }
+
+  /// A time `multiple` differences farther on, by more or less.
+  template <class Coder>
+  void codeMultiple(Coder& coder, int multiple, std::int32_t current) {
+    const unsigned context = multiple == 1       ? 1
+                             : multiple == 0     ? 7
+                             : multiple == kMost ? 4
+                             : multiple >= 10    ? 3
+                             : multiple > 0      ? 2
+                             : multiple > kLeast ? 5
+                                                 : 6;
+    current = codeInteger(coder, m_numbers, times(multiple, difference()), context, current);
+    m_times[m_sequence] += static_cast<std::uint64_t>(std::int64_t{current});
+    if (multiple == 1)
+      m_extremes[m_sequence] = 0;
+    else if (multiple == 0 || multiple == kMost || multiple == kLeast)
+      noteExtreme(current);
+  }
+
+  template <class Coder>
+  void decode(Coder& coder) {
+    // One change of sequence a time is all an encoder writes; damaged bytes shall not make a loop.
+    for (int change = 0; change < 4; ++change) {
+      if (difference() == 0) {
+        const int symbol = static_cast<int>(coder.symbol(m_still));
+        if (symbol < kStillShort) return;
+        if (symbol == kStillShort) return codeShort(coder, 0);
+        if (symbol == kStillFull) return codeFull(coder, 0);
+        m_sequence = (m_sequence + symbol - kStillFull) & 3;
+      } else {
+        const int symbol = static_cast<int>(coder.symbol(m_multiple));
+        if (symbol <= kMost) return codeMultiple(coder, symbol, 0);
+        if (symbol < kUnchanged) return codeMultiple(coder, kMost - symbol, 0);
+        if (symbol < kFull) return;
+        if (symbol == kFull) return codeFull(coder, 0);
+        m_sequence = (m_sequence + symbol - kFull) & 3;
+      }
+    }
+  }
+
+  template <class Coder>
+  void encode(Coder& coder, std::uint64_t time) {
+    for (;;) {
+      const auto wide = static_cast<std::int64_t>(time - m_times[m_sequence]);
+      const bool fits = wide == static_cast<std::int32_t>(wide);
+      const auto current = static_cast<std::int32_t>(wide);
+      const bool still = difference() == 0;
+      if (!Layered && wide == 0) {
+        if (still)
+          coder.symbol(m_still, 0);
+        else
+          coder.symbol(m_multiple, kUnchanged);
+        return;
+      }
+      if (fits && still) {
+        coder.symbol(m_still, kStillShort);
+        return codeShort(coder, current);
+      }
+      if (fits) {
+        const float ratio = std::clamp(static_cast<float>(current) / static_cast<float>(difference()),
+                                       static_cast<float>(kLeast), static_cast<float>(kMost));
+        const int multiple = static_cast<int>(ratio >= 0 ? ratio + 0.5f : ratio - 0.5f);
+        coder.symbol(m_multiple, static_cast<unsigned>(multiple >= 0 ? multiple : kMost - multiple));
+        return codeMultiple(coder, multiple, current);
+      }
+      const int other = sequenceNear(time);
+      if (still)
+        coder.symbol(m_still, static_cast<unsigned>(kStillFull + other));
+      else
+        coder.symbol(m_multiple, static_cast<unsigned>(kFull + other));
+      if (other == 0) return codeFull(coder, time);
+      m_sequence = (m_sequence + other) & 3;
+    }
+  }
+
+  /// How many sequences on is one whose time is within 32 bits of this; 0: none.
+  int sequenceNear(std::uint64_t time) const {
+    for (int i = 1; i < 4; ++i) {
+      const auto wide = static_cast<std::int64_t>(time - m_times[(m_sequence + i) & 3]);
+      if (wide == static_cast<std::int32_t>(wide)) return i;
+    }
+    return 0;
+  }
+
+  int m_sequence = 0, m_next = 0;
+  std::array<std::uint64_t, 4> m_times;  ///< the doubles' bits
+  std::array<std::int32_t, 4> m_differences, m_extremes;
+  SymbolModel<kFull + 4> m_multiple;
+  SymbolModel<kStillFull + 4> m_still;
+  IntegerModel<32, 9> m_numbers;
+};
+
+/// Red, green, blue of 16 bits: RGB12 version 2; RGB14 has the same code with other contexts.
+struct RgbModels {
+  SymbolModel<128> used;
+  std::array<SymbolModel<256>, 6> differences;
+  void start() {
+    renew(used);
+    for (auto& model : differences) renew(model);
+  }
+};
+
+/// Codes `rgb` (filled when decoding) against `last`, which follows. The upper and lower bytes go their own ways;
+/// green and blue are predicted from what red and green did; a grey point says so in one bit.
+template <class Coder>
+void codeRgb(Coder& coder, RgbModels& models, std::uint16_t* last, std::uint16_t* rgb) {
+  const auto byteOf = [](std::uint16_t v, int high) { return high ? v >> 8 : v & 0xFF; };
+  unsigned used = 0;
+  if constexpr (Coder::kEncodes) {
+    for (int i = 0; i < 6; ++i) used |= (byteOf(rgb[i / 2], i & 1) != byteOf(last[i / 2], i & 1)) << i;
+    used |= (rgb[0] != rgb[1] || rgb[0] != rgb[2]) << 6;
+  }
+  used = coder.symbol(models.used, used);
+  const auto code = [&](int i, int predicted) {
+    std::uint8_t difference = 0;
+    if constexpr (Coder::kEncodes) difference = static_cast<std::uint8_t>(byteOf(rgb[i / 2], i & 1) - predicted);
+    return static_cast<std::uint8_t>(predicted + static_cast<int>(coder.symbol(models.differences[i], difference)));
+  };
+  int now[6];
+  for (int i = 0; i < 6; ++i) now[i] = byteOf(last[i / 2], i & 1);
+  if (used & 1) now[0] = code(0, now[0]);
+  if (used & 2) now[1] = code(1, now[1]);
+  if (used & 64) {
+    for (int high = 0; high < 2; ++high) {
+      int step = now[high] - byteOf(last[0], high);
+      if (used & (4u << high)) now[2 + high] = code(2 + high, clampToByte(step + now[2 + high]));
+      if (used & (16u << high)) {
+        step = (step + now[2 + high] - byteOf(last[1], high)) / 2;
+        now[4 + high] = code(4 + high, clampToByte(step + now[4 + high]));
+      }
+    }
+  } else {
+    now[2] = now[4] = now[0];
+    now[3] = now[5] = now[1];
+  }
+  for (int i = 0; i < 3; ++i) last[i] = rgb[i] = static_cast<std::uint16_t>(now[2 * i] | now[2 * i + 1] << 8);
+}
+
+class Rgb12 {
+ public:
+  static constexpr std::size_t kSize = 6;
+
+  void start(const std::byte* first) {
+    std::memcpy(m_last, first, kSize);
+    m_models.start();
+  }
+
+  template <class Coder>
+  void code(Coder& coder, std::byte* at) {
+    std::uint16_t rgb[3];
+    std::memcpy(rgb, at, kSize);
+    codeRgb(coder, m_models, m_last, rgb);
+    if constexpr (!Coder::kEncodes) std::memcpy(at, rgb, kSize);
+  }
+
+ private:
+  std::uint16_t m_last[3];
+  RgbModels m_models;
+};
+
+/// Where a point's wave form stands: WAVEPACKET13 version 1; WAVEPACKET14 has the same code.
+class WavePacket {
+ public:
+  static constexpr std::size_t kSize = 29;
+
+  void start(const std::byte* first) {
+    std::memcpy(m_last, first, kSize);
+    startModels();
+  }
+  void startModels() {
+    m_lastOffsetKind = 0;
+    m_lastOffsetDifference = 0;
+    renew(m_index);
+    for (auto& model : m_offsetKind) renew(model);
+    renew(m_offsetDifference);
+    renew(m_size);
+    renew(m_returnPoint);
+    renew(m_direction);
+  }
+
+  template <class Coder>
+  void code(Coder& coder, std::byte* at) {
+    codeAgainst(coder, m_last, at);
+  }
+  std::byte* last() { return m_last; }
+
+  /// Against `last`, which follows.
+  template <class Coder>
+  void codeAgainst(Coder& coder, std::byte* last, std::byte* at) {
+    std::byte now[kSize];
+    std::memcpy(now, Coder::kEncodes ? at : last, kSize);
+    now[0] = static_cast<std::byte>(coder.symbol(m_index, byteAt(now)));
+    const auto lastOffset = load<std::uint64_t>(last + 1);
+    const auto lastSize = load<std::uint32_t>(last + 9);
+    auto offset = load<std::uint64_t>(now + 1);
+    const auto wide = static_cast<std::int64_t>(offset - lastOffset);
+    unsigned kind = wide == 0                                 ? 0
+                    : offset == lastOffset + lastSize         ? 1
+                    : wide == static_cast<std::int32_t>(wide) ? 2
+                                                              : 3;
+    m_lastOffsetKind = kind = coder.symbol(m_offsetKind[m_lastOffsetKind], kind);
+    if (kind == 0) {
+      offset = lastOffset;
+    } else if (kind == 1) {
+      offset = lastOffset + lastSize;
+    } else if (kind == 2) {
+      m_lastOffsetDifference = codeInteger(coder, m_offsetDifference, m_lastOffsetDifference, 0,
+                                           static_cast<std::int32_t>(wide));
+      offset = lastOffset + static_cast<std::uint64_t>(std::int64_t{m_lastOffsetDifference});
+    } else {
+      const std::uint32_t low = coder.bits(32, static_cast<std::uint32_t>(offset));
+      offset = std::uint64_t{coder.bits(32, static_cast<std::uint32_t>(offset >> 32))} << 32 | low;
+    }
+    store(now + 1, offset);
+    const auto number = [&](auto& model, std::size_t field, unsigned context) {
+      store(now + field, codeInteger(coder, model, load<std::int32_t>(last + field), context,
+                                     load<std::int32_t>(now + field)));
+    };
+    number(m_size, 9, 0);
+    number(m_returnPoint, 13, 0);
+    for (unsigned axis = 0; axis < 3; ++axis) number(m_direction, 17 + 4 * axis, axis);
+    std::memcpy(last, now, kSize);
+    if constexpr (!Coder::kEncodes) std::memcpy(at, now, kSize);
+  }
+
+ private:
+  std::byte m_last[kSize];
+  unsigned m_lastOffsetKind = 0;
+  std::int32_t m_lastOffsetDifference = 0;
+  SymbolModel<256> m_index;
+  std::array<SymbolModel<4>, 4> m_offsetKind;
+  IntegerModel<32, 1> m_offsetDifference, m_size, m_returnPoint;
+  IntegerModel<32, 3> m_direction;
+};
+
+/// Extra bytes, each against its last: BYTE version 2.
+class ExtraBytes {
+ public:
+  explicit ExtraBytes(std::size_t size = 0) : m_last(size), m_models(size) {}
+  std::size_t size() const { return m_last.size(); }
+
+  void start(const std::byte* first) {
+    if (!m_last.empty()) std::memcpy(m_last.data(), first, m_last.size());
+    for (auto& model : m_models) renew(model);
+  }
+
+  template <class Coder>
+  void code(Coder& coder, std::byte* at) {
+    for (std::size_t i = 0; i < m_last.size(); ++i) {
+      std::uint8_t difference = 0;
+      if constexpr (Coder::kEncodes) difference = static_cast<std::uint8_t>(byteAt(at + i) - byteAt(&m_last[i]));
+      m_last[i] = static_cast<std::byte>(byteAt(&m_last[i]) + coder.symbol(m_models[i], difference));
+      if constexpr (!Coder::kEncodes) at[i] = m_last[i];
+    }
+  }
+
+ private:
+  std::vector<std::byte> m_last;
+  std::vector<SymbolModel<256>> m_models;
+};
+
+}  // namespace alidade::laz

@@ -1,0 +1,251 @@
+// SPDX-FileCopyrightText: 2026 the Alidade authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <memory>
+
+#if defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
+namespace alidade::laz {
+
+/// How many of 16 rising numbers are at most `limit` (both below 2^15).
+inline unsigned countUpTo(const std::uint16_t* sixteen, std::uint32_t limit) {
+#if defined(__SSE2__)
+  const __m128i wanted = _mm_set1_epi16(static_cast<short>(limit));
+  const __m128i low = _mm_cmpgt_epi16(_mm_load_si128(reinterpret_cast<const __m128i*>(sixteen)), wanted);
+  const __m128i high = _mm_cmpgt_epi16(_mm_load_si128(reinterpret_cast<const __m128i*>(sixteen + 8)), wanted);
+  // Bit 16 ends the search where all are small enough.
+  return static_cast<unsigned>(__builtin_ctz(_mm_movemask_epi8(_mm_packs_epi16(low, high)) | 0x10000));
+#else
+  unsigned count = 0;
+  for (int i = 0; i < 16; ++i) count += sixteen[i] <= limit;
+  return count;
+#endif
+}
+
+/// An adaptive model of `symbols` symbols, at most Capacity: cumulated frequencies in 2^-15, renewed from
+/// counts at growing distances (A. Said, "Introduction to Arithmetic Coding", HPL-2004-76, and the
+/// LASzip specification). Symbols are found in groups of 16 by comparing whole vectors: no loop that a
+/// processor would have to guess the length of.
+template <int Capacity>
+class SymbolModel {
+ public:
+  static constexpr int kGroups = (Capacity + 15) / 16;
+  static constexpr std::uint32_t kMaxTotal = 1 << 15;
+
+  explicit SymbolModel(int symbols = Capacity) : m_symbols(static_cast<std::uint16_t>(symbols)) {
+    m_low.fill(kMaxTotal - 1);
+    m_first.fill(kMaxTotal - 1);
+    m_counts.fill(0);
+    for (int i = 0; i < symbols; ++i) m_counts[i] = 1;
+    m_cycle = static_cast<std::uint32_t>(symbols);
+    renew();
+    m_cycle = m_untilRenewal = (static_cast<std::uint32_t>(symbols) + 6) >> 1;
+  }
+
+  std::uint32_t low(unsigned symbol) const { return m_low[symbol]; }
+  unsigned last() const { return m_symbols - 1u; }
+
+  /// The symbol whose share of [0, 2^15) holds `place`.
+  unsigned find(std::uint32_t place) const {
+    place = std::min(place, kMaxTotal - 1);
+    unsigned group = 0;
+    if constexpr (kGroups > 1) {
+      for (int block = 0; block < kFirst; block += 16) group += countUpTo(m_first.data() + block, place);
+      group = std::min(group - 1, kGroups - 1u);
+    }
+    return std::min(16 * group + countUpTo(m_low.data() + 16 * group, place) - 1, last());
+  }
+
+  void learn(unsigned symbol) {
+    ++m_counts[symbol];
+    if (--m_untilRenewal == 0) renew();
+  }
+
+ private:
+  static constexpr int kFirst = (kGroups + 15) / 16 * 16;
+
+  void renew() {
+    m_total += m_cycle;
+    if (m_total > kMaxTotal) {
+      m_total = 0;
+      for (int i = 0; i < m_symbols; ++i) m_total += m_counts[i] = static_cast<std::uint16_t>((m_counts[i] + 1) >> 1);
+    }
+    const std::uint32_t scale = 0x80000000u / m_total;
+    std::uint32_t sum = 0;
+    for (int i = 0; i < m_symbols; ++i) {
+      m_low[i] = static_cast<std::uint16_t>((scale * sum) >> 16);
+      sum += m_counts[i];
+    }
+    if constexpr (kGroups > 1)
+      for (int group = 0; 16 * group < m_symbols; ++group) m_first[group] = m_low[16 * group];
+    m_cycle = std::min((5 * m_cycle) >> 2, (m_symbols + 6u) << 3);
+    m_untilRenewal = m_cycle;
+  }
+
+  alignas(16) std::array<std::uint16_t, 16 * kGroups> m_low;
+  alignas(16) std::array<std::uint16_t, kFirst> m_first;  ///< every 16th of m_low
+  std::array<std::uint16_t, 16 * kGroups> m_counts;
+  std::uint32_t m_total = 0, m_cycle = 0, m_untilRenewal = 0;
+  std::uint16_t m_symbols;
+};
+
+/// The same for a single bit, in 2^-13.
+class BitModel {
+ public:
+  std::uint32_t zeroShare() const { return m_zeroShare; }
+
+  void learn(unsigned bit) {
+    m_zeros += bit == 0;
+    if (--m_untilRenewal == 0) renew();
+  }
+
+ private:
+  void renew() {
+    m_total += m_cycle;
+    if (m_total > 1 << 13) {
+      m_total = (m_total + 1) >> 1;
+      m_zeros = (m_zeros + 1) >> 1;
+      if (m_zeros == m_total) ++m_total;
+    }
+    m_zeroShare = (m_zeros * (0x80000000u / m_total)) >> 18;
+    m_cycle = std::min((5 * m_cycle) >> 2, 64u);
+    m_untilRenewal = m_cycle;
+  }
+
+  std::uint32_t m_zeros = 1, m_total = 2, m_zeroShare = 1 << 12, m_cycle = 4, m_untilRenewal = 4;
+};
+
+/// How a corrected prediction is coded: the number k of bits that the correction takes (a model for
+/// each of Contexts), then the correction itself, its upper 8 bits by a model and the others as they are.
+/// Bits is the width of the numbers: 8, 16 or 32.
+template <int Bits, int Contexts>
+class IntegerModel {
+ public:
+  static constexpr int kModelled = 8;
+
+  IntegerModel() {
+    m_width.fill(SymbolModel<Bits + 1>());
+    for (int k = 1; k <= 4; ++k) m_small[k - 1] = SymbolModel<16>(1 << k);
+    for (int k = 5; k <= Bits; ++k) m_large[k - 5] = SymbolModel<256>(1 << std::min(k, kModelled));
+  }
+
+  SymbolModel<Bits + 1>& width(unsigned context) { return m_width[context]; }
+  BitModel& bit() { return m_bit; }
+  SymbolModel<16>& small(unsigned k) { return m_small[k - 1]; }    ///< k in 1..4
+  SymbolModel<256>& large(unsigned k) { return m_large[k - 5]; }   ///< k in 5..Bits
+
+  unsigned k = 0;  ///< of the number coded last: the context of others
+
+ private:
+  std::array<SymbolModel<Bits + 1>, Contexts> m_width;
+  std::array<SymbolModel<16>, 4> m_small;
+  std::array<SymbolModel<256>, Bits - 4> m_large;
+  BitModel m_bit;
+};
+
+/// As new. A copy of an untouched one costs less than working it out again.
+template <class Model>
+void renew(Model& model) {
+  static const Model fresh;
+  model = fresh;
+}
+
+/// Models of which few are ever used: made when first asked for, kept for the next chunk.
+template <int Symbols, int Count>
+class LazyModels {
+ public:
+  SymbolModel<Symbols>& operator[](unsigned i) {
+    if (!m_used[i]) {
+      if (!m_models[i]) m_models[i] = std::make_unique<SymbolModel<Symbols>>();
+      renew(*m_models[i]);
+      m_used[i] = true;
+    }
+    return *m_models[i];
+  }
+  void reset() { m_used.fill(false); }
+
+ private:
+  std::array<std::unique_ptr<SymbolModel<Symbols>>, Count> m_models;
+  std::array<bool, Count> m_used{};
+};
+
+/// The middle of five numbers that follow a sequence: each new one pushes out the largest or the
+/// smallest in turn.
+class StreamingMedian {
+ public:
+  std::int32_t get() const { return m_values[2]; }
+
+  void add(std::int32_t v) {
+    auto& s = m_values;
+    if (m_dropHigh) {
+      if (v < s[2]) {
+        s[4] = s[3];
+        s[3] = s[2];
+        insertLow(v);
+      } else {
+        if (v < s[3]) {
+          s[4] = s[3];
+          s[3] = v;
+        } else {
+          s[4] = v;
+        }
+        m_dropHigh = false;
+      }
+    } else {
+      if (s[2] < v) {
+        s[0] = s[1];
+        s[1] = s[2];
+        insertHigh(v);
+      } else {
+        if (s[1] < v) {
+          s[0] = s[1];
+          s[1] = v;
+        } else {
+          s[0] = v;
+        }
+        m_dropHigh = true;
+      }
+    }
+  }
+
+ private:
+  void insertLow(std::int32_t v) {
+    auto& s = m_values;
+    if (v < s[0]) {
+      s[2] = s[1];
+      s[1] = s[0];
+      s[0] = v;
+    } else if (v < s[1]) {
+      s[2] = s[1];
+      s[1] = v;
+    } else {
+      s[2] = v;
+    }
+  }
+  void insertHigh(std::int32_t v) {
+    auto& s = m_values;
+    if (s[4] < v) {
+      s[2] = s[3];
+      s[3] = s[4];
+      s[4] = v;
+    } else if (s[3] < v) {
+      s[2] = s[3];
+      s[3] = v;
+    } else {
+      s[2] = v;
+    }
+  }
+
+  std::array<std::int32_t, 5> m_values{};
+  bool m_dropHigh = true;
+};
+
+}  // namespace alidade::laz
