@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the Alidade authors
 // SPDX-License-Identifier: BSD-3-Clause
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "cli/command.h"
@@ -38,6 +40,20 @@ std::string crsText(const std::string& crs) {
   return fmt::format("  crs       {}\n", crs.size() > 100 ? crs.substr(0, 97) + "…" : crs);
 }
 
+std::string stationsText(const std::vector<Station>& stations) {
+  constexpr std::size_t kMost = 20;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(stations.size(), kMost); ++i) {
+    const glm::dvec3 at = stations[i].worldFromScanner.translation;
+    text += fmt::format("            {}: E {:.3f}  N {:.3f}  H {:.3f} m", stations[i].name.empty() ? std::to_string(i + 1) : stations[i].name,
+                        at.x, at.y, at.z);
+    if (stations[i].rows > 0) text += fmt::format(", {} rows of {}", stations[i].rows, stations[i].columns);
+    text += '\n';
+  }
+  if (stations.size() > kMost) text += "            …\n";
+  return text;
+}
+
 Result<Description> describe(const ScanReader& reader, const std::string& path) {
   const auto info = reader.inspect(path);
   if (!info) return fail(info.error());
@@ -53,7 +69,7 @@ Result<Description> describe(const ScanReader& reader, const std::string& path) 
                                     {"rows", station.rows}, {"columns", station.columns}});
   out.text = fmt::format("  points    {}\n", info->pointCount) + boundsText(info->bounds) + crsText(info->crs) +
              fmt::format("  columns   {}\n", fmt::join(info->attributes, ", "));
-  if (!info->stations.empty()) out.text += fmt::format("  stations  {}\n", info->stations.size());
+  if (!info->stations.empty()) out.text += fmt::format("  stations  {}\n", info->stations.size()) + stationsText(info->stations);
   out.text += fmt::format("  format    {}\n", info->details);
   return out;
 }

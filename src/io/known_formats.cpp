@@ -19,7 +19,6 @@ struct KnownFormat {
   std::string_view extensions;  ///< between blanks, lower case
 };
 
-constexpr std::string_view kAsLas = "Convert it to LAS or PLY, for example with CloudCompare or PDAL";
 constexpr std::string_view kAsColmap = "Import it into COLMAP and export the model as text";
 constexpr std::string_view kAsIfc = "Export it from the design program as IFC4, IFC2x3, OBJ or glTF";
 constexpr std::string_view kAsPicture = "Develop it to TIFF, PNG or JPEG without lens correction";
@@ -28,9 +27,6 @@ constexpr std::string_view kAsPicture = "Develop it to TIFF, PNG or JPEG without
 constexpr KnownFormat kFormats[] = {
     {"Bundler model", kAsColmap, "# Bundle file", ""},
     {"AutoCAD drawing (DWG)", kAsIfc, "AC10", "dwg"},
-    {"PTX scan", kAsLas, "", "ptx"},
-    {"PTS scan", kAsLas, "", "pts"},
-    {"plain list of points (XYZ)", kAsLas, "", "xyz asc"},
     {"scanner maker's scan", "Export it from the maker's program as LAS or PLY", "", "fls rcp rcs zfs rxp rdbx lgs imp"},
     {"pose graph (g2o)", "Export the poses as a COLMAP text model or a TUM trajectory", "", "g2o"},
     {"IFC model in XML or ZIP", "Export it as plain IFC (STEP): IFC4 or IFC2x3", "", "ifcxml ifczip"},
