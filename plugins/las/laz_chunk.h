@@ -36,7 +36,7 @@ class ChunkDecoder {
   virtual ~ChunkDecoder() = default;
 
   /// Bytes behind a chunk that must be readable.
-  static constexpr std::size_t kReadable = 8;
+  static constexpr std::size_t kReadable = 1 << 14;
 
   /// False where the bytes cannot hold a chunk. They must live, and kReadable bytes behind them, until the next start.
   virtual bool start(std::span<const std::byte> chunk) = 0;

@@ -11,16 +11,18 @@
 #include "las/laz_models.h"
 
 namespace alidade::laz {
+inline namespace ALIDADE_LAZ_SET {
 
-/// Bytes that must be readable behind a compressed stream: the decoder loads four at a time.
-constexpr std::size_t kPadding = 8;
+/// Bytes that must be readable behind a compressed stream: what one point takes at most (two bytes a symbol), or
+/// 64 points of a layer, before `hold` is called.
+constexpr std::size_t kPadding = 1 << 14;
 
 constexpr std::uint32_t kMinLength = 1u << 24;
 
 /// Range decoder of the LASzip specification. Decoder and encoder have the same methods, so that one text of an item
 /// serves both: each takes the value to encode and returns the value coded, which the decoder makes up alone.
 ///
-/// Never fails: past the end it reads zeros, and `overran` tells.
+/// Never fails: past the end it reads what stands there, and `overran` tells.
 class Decoder {
  public:
   static constexpr bool kEncodes = false;
@@ -29,11 +31,14 @@ class Decoder {
   /// kPadding bytes behind `bytes` must be readable.
   explicit Decoder(std::span<const std::byte> bytes)
       : m_at(bytes.data()), m_end(bytes.data() + bytes.size()), m_limit(m_end + 4) {
-    m_value = next();
+    // The format's values are below the length; no damaged one shall be otherwise.
+    m_value = std::min(next(), m_length - 1);
     m_at = bytes.size() < 4 ? m_limit : m_at + 4;
   }
 
   bool overran() const { return m_at > m_end; }
+  /// To be called after each point: goes back to the end where it was passed.
+  void hold() { m_at = std::min(m_at, m_limit); }
   /// Behind the last byte taken.
   const std::byte* position() const { return m_at; }
 
@@ -42,7 +47,9 @@ class Decoder {
     const std::uint32_t step = m_length >> 15;
     const unsigned symbol = model.find(m_value / step);
     const std::uint32_t low = model.low(symbol) * step;
-    const std::uint32_t high = symbol == model.last() ? m_length : model.low(symbol + 1) * step;
+    // Both are worked out, so that no branch is guessed; what stands behind the last symbol is not used.
+    std::uint32_t high = model.low(symbol + 1) * step;
+    high = symbol == model.last() ? m_length : high;
     m_value -= low;
     m_length = high - low;
     normalise();
@@ -69,7 +76,7 @@ class Decoder {
   }
 
  private:
-  std::uint32_t fewBits(unsigned count) {
+  [[gnu::always_inline]] std::uint32_t fewBits(unsigned count) {
     m_length >>= count;
     const std::uint32_t number = m_value / m_length;
     m_value -= m_length * number;
@@ -89,7 +96,6 @@ class Decoder {
     m_value = m_value << shift | (next() >> 1) >> (31 - shift);
     m_length <<= shift;
     m_at += shift >> 3;
-    m_at = m_at < m_limit ? m_at : m_limit;
   }
 
   std::uint32_t m_value = 0, m_length = 0xFFFFFFFFu;
@@ -175,6 +181,18 @@ class Encoder {
   std::vector<std::byte> m_bytes;
 };
 
+/// Runs `body` with a decoder that lives in registers: a copy that no store to a record can alias.
+template <class Coder, class Body>
+[[gnu::always_inline]] inline auto inRegisters(Coder& coder, const Body& body) {
+  if constexpr (Coder::kEncodes) {
+    return body(coder);
+  } else {
+    Coder local = coder;
+    body(local);
+    coder = local;
+  }
+}
+
 /// Codes `value`, a number of Bits bits, as its difference from `predicted`; leaves the number of the
 /// difference's bits in `model.k`.
 template <class Coder, int Bits, int Contexts>
@@ -218,4 +236,5 @@ template <class Coder, int Bits, int Contexts>
   return static_cast<std::int32_t>(sum & static_cast<std::uint32_t>(kRange - 1));
 }
 
+}  // namespace ALIDADE_LAZ_SET
 }  // namespace alidade::laz

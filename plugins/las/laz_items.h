@@ -13,6 +13,7 @@
 // it reads the record when encoding and fills it when decoding. Records are those of LAS: little endian, packed.
 
 namespace alidade::laz {
+inline namespace ALIDADE_LAZ_SET {
 
 template <class T>
 T load(const std::byte* at) {
@@ -48,13 +49,11 @@ inline unsigned evenUpTo(unsigned k, unsigned most) {
   return k < most ? k & ~1u : most;
 }
 
-/// A byte of the record by a model chosen by its last value.
+/// A byte by a model chosen by its last value.
 template <class Coder, int N>
-void codeByte(Coder& coder, LazyModels<256, N>& models, std::byte& last, const std::byte* at,
-              std::size_t field) {
-  std::uint8_t value = 0;
-  if constexpr (Coder::kEncodes) value = byteAt(at + field);
-  last = static_cast<std::byte>(coder.symbol(models[byteAt(&last)], value));
+[[gnu::always_inline]] inline void codeByte(Coder& coder, LazyModels<256, N>& models, std::uint8_t& last,
+                                            std::uint8_t value) {
+  last = static_cast<std::uint8_t>(coder.symbol(models[last], value));
 }
 
 /// LAS 1.2 core record, 20 bytes: POINT10 version 2.
@@ -63,8 +62,7 @@ class Point10 {
   static constexpr std::size_t kSize = 20;
 
   void start(const std::byte* first) {
-    std::memcpy(m_last, first, kSize);
-    store<std::uint16_t>(m_last + 12, 0);
+    m_last = Fields(first);
     m_intensities.fill(0);
     m_heights.fill(0);
     m_xMedians.fill({});
@@ -83,75 +81,102 @@ class Point10 {
 
   /// Everything but the coordinates; `at` is the record.
   template <class Coder>
-  void codeAttributes(Coder& coder, const std::byte* at) {
+  void codeAttributes(Coder& coder, std::byte* at) {
+    Fields now;
     unsigned changed = 0;
     if constexpr (Coder::kEncodes) {
-      const unsigned context = returnContext(byteAt(at + 14));
-      changed = (at[14] != m_last[14]) << 5 | (load<std::uint16_t>(at + 12) != m_intensities[context]) << 4 |
-                (at[15] != m_last[15]) << 3 | (at[16] != m_last[16]) << 2 | (at[17] != m_last[17]) << 1 |
-                (load<std::uint16_t>(at + 18) != load<std::uint16_t>(m_last + 18));
+      now = Fields(at);
+      changed = (now.returns != m_last.returns) << 5 |
+                (now.intensity != m_intensities[returnContext(now.returns)]) << 4 |
+                (now.classification != m_last.classification) << 3 | (now.scanAngle != m_last.scanAngle) << 2 |
+                (now.userData != m_last.userData) << 1 | (now.pointSource != m_last.pointSource);
     }
     changed = coder.symbol(m_changed, changed);
-    if (changed & 32) codeByte(coder, m_returns, m_last[14], at, 14);
-    m_context = returnContext(byteAt(m_last + 14));
-    if (changed & 16) {
-      std::int32_t value = 0;
-      if constexpr (Coder::kEncodes) value = load<std::uint16_t>(at + 12);
+    if (changed & 32) codeByte(coder, m_returns, m_last.returns, now.returns);
+    m_context = returnContext(m_last.returns);
+    if (changed & 16)
       m_intensities[m_context] = static_cast<std::uint16_t>(
-          codeInteger(coder, m_intensity, m_intensities[m_context], std::min(m_context, 3u), value));
-    }
-    store(m_last + 12, m_intensities[m_context]);
-    if (changed & 8) codeByte(coder, m_classification, m_last[15], at, 15);
-    if (changed & 4) {
-      std::uint8_t difference = 0;
-      if constexpr (Coder::kEncodes) difference = static_cast<std::uint8_t>(byteAt(at + 16) - byteAt(m_last + 16));
-      const unsigned direction = byteAt(m_last + 14) >> 6 & 1;
-      m_last[16] = static_cast<std::byte>(coder.symbol(m_scanAngle[direction], difference) + byteAt(m_last + 16));
-    }
-    if (changed & 2) codeByte(coder, m_userData, m_last[17], at, 17);
-    if (changed & 1) {
-      std::int32_t value = 0;
-      if constexpr (Coder::kEncodes) value = load<std::uint16_t>(at + 18);
-      store(m_last + 18, static_cast<std::uint16_t>(
-                             codeInteger(coder, m_pointSource, load<std::uint16_t>(m_last + 18), 0, value)));
+          codeInteger(coder, m_intensity, m_intensities[m_context], std::min(m_context, 3u), now.intensity));
+    if (changed & 15) codeRareAttributes(coder, changed, now);
+    if constexpr (!Coder::kEncodes) {
+      store(at + 12, m_intensities[m_context]);
+      store(at + 14, m_last.returns);
+      store(at + 15, m_last.classification);
+      store(at + 16, m_last.scanAngle);
+      store(at + 17, m_last.userData);
+      store(at + 18, m_last.pointSource);
     }
   }
 
   template <class Coder>
-  void codeX(Coder& coder, const std::byte* at) {
-    codeDifference(coder, m_dx, m_xMedians[m_context], isSingle(), 0, at);
+  void codeX(Coder& outer, std::byte* at) {
+    inRegisters(outer, [&](Coder& coder) __attribute__((always_inline)) {
+      codeDifference(coder, m_dx, m_xMedians[m_context], isSingle(), m_last.x, at);
+    });
   }
 
   template <class Coder>
-  void codeY(Coder& coder, const std::byte* at) {
-    codeDifference(coder, m_dy, m_yMedians[m_context], isSingle() + evenUpTo(m_dx.k, 20), 4, at);
+  void codeY(Coder& outer, std::byte* at) {
+    inRegisters(outer, [&](Coder& coder) __attribute__((always_inline)) {
+      codeDifference(coder, m_dy, m_yMedians[m_context], isSingle() + evenUpTo(m_dx.k, 20), m_last.y, at + 4);
+    });
   }
 
-  /// The last of a point.
   template <class Coder>
   void codeZ(Coder& coder, std::byte* at) {
     std::int32_t value = 0;
     if constexpr (Coder::kEncodes) value = load<std::int32_t>(at + 8);
-    const unsigned returns = byteAt(m_last + 14);
-    std::int32_t& height = m_heights[std::abs(static_cast<int>(returns >> 3 & 7) - static_cast<int>(returns & 7))];
-    height = codeInteger(coder, m_z, height, isSingle() + evenUpTo((m_dx.k + m_dy.k) / 2, 18), value);
-    store(m_last + 8, height);
-    if constexpr (!Coder::kEncodes) std::memcpy(at, m_last, kSize);
+    std::int32_t& height = m_heights[std::abs((m_last.returns >> 3 & 7) - (m_last.returns & 7))];
+    inRegisters(coder, [&](Coder& local) __attribute__((always_inline)) {
+      value = codeInteger(local, m_z, height, isSingle() + evenUpTo((m_dx.k + m_dy.k) / 2, 18), value);
+    });
+    height = value;
+    if constexpr (!Coder::kEncodes) store(at + 8, value);
   }
 
  private:
-  template <class Coder, int Contexts>
-  void codeDifference(Coder& coder, IntegerModel<32, Contexts>& model, StreamingMedian& median, unsigned context,
-                      std::size_t field, const std::byte* at) {
-    const std::int32_t last = load<std::int32_t>(m_last + field);
-    std::int32_t difference = 0;
-    if constexpr (Coder::kEncodes) difference = minus(load<std::int32_t>(at + field), last);
-    difference = codeInteger(coder, model, median.get(), context, difference);
-    store(m_last + field, plus(last, difference));
-    median.add(difference);
+  /// The record's fields but z, which is predicted from its height level.
+  struct Fields {
+    Fields() = default;
+    explicit Fields(const std::byte* at)
+        : x(load<std::int32_t>(at)),
+          y(load<std::int32_t>(at + 4)),
+          intensity(load<std::uint16_t>(at + 12)),
+          pointSource(load<std::uint16_t>(at + 18)),
+          returns(byteAt(at + 14)),
+          classification(byteAt(at + 15)),
+          scanAngle(byteAt(at + 16)),
+          userData(byteAt(at + 17)) {}
+    std::int32_t x = 0, y = 0;
+    std::uint16_t intensity = 0, pointSource = 0;
+    std::uint8_t returns = 0, classification = 0, scanAngle = 0, userData = 0;
+  };
+
+  template <class Coder>
+  void codeRareAttributes(Coder& coder, unsigned changed, const Fields& now) {
+    if (changed & 8) codeByte(coder, m_classification, m_last.classification, now.classification);
+    if (changed & 4) {
+      const auto difference = static_cast<std::uint8_t>(now.scanAngle - m_last.scanAngle);
+      m_last.scanAngle += static_cast<std::uint8_t>(coder.symbol(m_scanAngle[m_last.returns >> 6 & 1], difference));
+    }
+    if (changed & 2) codeByte(coder, m_userData, m_last.userData, now.userData);
+    if (changed & 1)
+      m_last.pointSource =
+          static_cast<std::uint16_t>(codeInteger(coder, m_pointSource, m_last.pointSource, 0, now.pointSource));
   }
 
-  unsigned isSingle() const { return (byteAt(m_last + 14) >> 3 & 7) == 1; }
+  template <class Coder, int Contexts>
+  [[gnu::always_inline]] void codeDifference(Coder& coder, IntegerModel<32, Contexts>& model, StreamingMedian& median,
+                                             unsigned context, std::int32_t& last, std::byte* at) {
+    std::int32_t difference = 0;
+    if constexpr (Coder::kEncodes) difference = minus(load<std::int32_t>(at), last);
+    difference = codeInteger(coder, model, median.get(), context, difference);
+    last = plus(last, difference);
+    median.add(difference);
+    if constexpr (!Coder::kEncodes) store(at, last);
+  }
+
+  unsigned isSingle() const { return (m_last.returns >> 3 & 7) == 1; }
 
   /// Number of returns and return number as one context of 16; row: of how many, column: which.
   static unsigned returnContext(unsigned returns) {
@@ -162,7 +187,7 @@ class Point10 {
     return kMap[returns >> 3 & 7][returns & 7];
   }
 
-  alignas(8) std::byte m_last[kSize];
+  Fields m_last;
   unsigned m_context = 0;
   std::array<std::uint16_t, 16> m_intensities;
   std::array<std::int32_t, 8> m_heights;
@@ -348,7 +373,7 @@ struct RgbModels {
 /// Codes `rgb` (filled when decoding) against `last`, which follows. The upper and lower bytes go their own ways;
 /// green and blue are predicted from what red and green did; a grey point says so in one bit.
 template <class Coder>
-void codeRgb(Coder& coder, RgbModels& models, std::uint16_t* last, std::uint16_t* rgb) {
+[[gnu::always_inline]] inline void codeRgb(Coder& coder, RgbModels& models, std::uint16_t* last, std::uint16_t* rgb) {
   const auto byteOf = [](std::uint16_t v, int high) { return high ? v >> 8 : v & 0xFF; };
   unsigned used = 0;
   if constexpr (Coder::kEncodes) {
@@ -356,29 +381,28 @@ void codeRgb(Coder& coder, RgbModels& models, std::uint16_t* last, std::uint16_t
     used |= (rgb[0] != rgb[1] || rgb[0] != rgb[2]) << 6;
   }
   used = coder.symbol(models.used, used);
-  const auto code = [&](int i, int predicted) {
+  const auto code = [&](int i, int predicted) __attribute__((always_inline)) {
     std::uint8_t difference = 0;
     if constexpr (Coder::kEncodes) difference = static_cast<std::uint8_t>(byteOf(rgb[i / 2], i & 1) - predicted);
     return static_cast<std::uint8_t>(predicted + static_cast<int>(coder.symbol(models.differences[i], difference)));
   };
-  int now[6];
-  for (int i = 0; i < 6; ++i) now[i] = byteOf(last[i / 2], i & 1);
-  if (used & 1) now[0] = code(0, now[0]);
-  if (used & 2) now[1] = code(1, now[1]);
+  const int lastLow[3] = {last[0] & 0xFF, last[1] & 0xFF, last[2] & 0xFF};
+  const int lastHigh[3] = {last[0] >> 8, last[1] >> 8, last[2] >> 8};
+  int low[3] = {lastLow[0], lastLow[1], lastLow[2]}, high[3] = {lastHigh[0], lastHigh[1], lastHigh[2]};
+  if (used & 1) low[0] = code(0, lastLow[0]);
+  if (used & 2) high[0] = code(1, lastHigh[0]);
   if (used & 64) {
-    for (int high = 0; high < 2; ++high) {
-      int step = now[high] - byteOf(last[0], high);
-      if (used & (4u << high)) now[2 + high] = code(2 + high, clampToByte(step + now[2 + high]));
-      if (used & (16u << high)) {
-        step = (step + now[2 + high] - byteOf(last[1], high)) / 2;
-        now[4 + high] = code(4 + high, clampToByte(step + now[4 + high]));
-      }
-    }
+    int step = low[0] - lastLow[0];
+    if (used & 4) low[1] = code(2, clampToByte(step + lastLow[1]));
+    if (used & 16) low[2] = code(4, clampToByte((step + low[1] - lastLow[1]) / 2 + lastLow[2]));
+    step = high[0] - lastHigh[0];
+    if (used & 8) high[1] = code(3, clampToByte(step + lastHigh[1]));
+    if (used & 32) high[2] = code(5, clampToByte((step + high[1] - lastHigh[1]) / 2 + lastHigh[2]));
   } else {
-    now[2] = now[4] = now[0];
-    now[3] = now[5] = now[1];
+    low[1] = low[2] = low[0];
+    high[1] = high[2] = high[0];
   }
-  for (int i = 0; i < 3; ++i) last[i] = rgb[i] = static_cast<std::uint16_t>(now[2 * i] | now[2 * i + 1] << 8);
+  for (int i = 0; i < 3; ++i) last[i] = rgb[i] = static_cast<std::uint16_t>(low[i] | high[i] << 8);
 }
 
 class Rgb12 {
@@ -392,10 +416,11 @@ class Rgb12 {
 
   template <class Coder>
   void code(Coder& coder, std::byte* at) {
-    std::uint16_t rgb[3];
-    std::memcpy(rgb, at, kSize);
-    codeRgb(coder, m_models, m_last, rgb);
-    if constexpr (!Coder::kEncodes) std::memcpy(at, rgb, kSize);
+    std::uint16_t rgb[3] = {};
+    if constexpr (Coder::kEncodes) std::memcpy(rgb, at, kSize);
+    inRegisters(coder, [&](Coder& local) __attribute__((always_inline)) { codeRgb(local, m_models, m_last, rgb); });
+    if constexpr (!Coder::kEncodes)
+      for (int i = 0; i < 3; ++i) store(at + 2 * i, rgb[i]);
   }
 
  private:
@@ -504,4 +529,5 @@ class ExtraBytes {
   std::vector<SymbolModel<256>> m_models;
 };
 
+}  // namespace ALIDADE_LAZ_SET
 }  // namespace alidade::laz

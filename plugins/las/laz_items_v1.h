@@ -8,6 +8,7 @@
 // The same items in version 1, as files of 2010 and 2011 have them. Read only.
 
 namespace alidade::laz {
+inline namespace ALIDADE_LAZ_SET {
 
 class Point10V1 {
  public:
@@ -58,12 +59,15 @@ class Point10V1 {
     const auto wide = [&](auto& model, std::size_t field) {
       store(m_last + field, static_cast<std::uint16_t>(codeInteger(coder, model, load<std::uint16_t>(m_last + field), 0)));
     };
+    const auto byteBy = [&](LazyModels<256, 256>& models, std::size_t field) {
+      m_last[field] = static_cast<std::byte>(coder.symbol(models[byteAt(m_last + field)]));
+    };
     if (changed & 32) wide(m_intensity, 12);
-    if (changed & 16) codeByte(coder, m_returns, m_last[14], m_last, 14);
-    if (changed & 8) codeByte(coder, m_classification, m_last[15], m_last, 15);
+    if (changed & 16) byteBy(m_returns, 14);
+    if (changed & 8) byteBy(m_classification, 15);
     if (changed & 4)
       m_last[16] = static_cast<std::byte>(codeInteger(coder, m_scanAngle, byteAt(m_last + 16), k < 3));
-    if (changed & 2) codeByte(coder, m_userData, m_last[17], m_last, 17);
+    if (changed & 2) byteBy(m_userData, 17);
     if (changed & 1) wide(m_pointSource, 18);
   }
 
@@ -198,4 +202,5 @@ class ExtraBytesV1 {
   IntegerModel<8, 1> m_numbers;
 };
 
+}  // namespace ALIDADE_LAZ_SET
 }  // namespace alidade::laz

@@ -11,6 +11,7 @@
 // changes within a chunk is left out. Each of the four scanner channels has its own models and last values.
 
 namespace alidade::laz {
+inline namespace ALIDADE_LAZ_SET {
 
 /// One layer's coder. Decoding: `present` says that the layer was written. Encoding: that it must be.
 template <class Coder>
@@ -434,4 +435,5 @@ class ExtraBytes14 {
   ChannelFollower<Context> m_contexts;
 };
 
+}  // namespace ALIDADE_LAZ_SET
 }  // namespace alidade::laz

@@ -10,19 +10,36 @@
 #include <memory>
 
 #if defined(__SSE2__)
-#include <emmintrin.h>
+#include <immintrin.h>
+#endif
+
+// Everything here may be compiled for several instruction sets (laz_chunk_body.h), each in a namespace of its own.
+#if !defined(ALIDADE_LAZ_SET)
+#define ALIDADE_LAZ_SET baseline
 #endif
 
 namespace alidade::laz {
+inline namespace ALIDADE_LAZ_SET {
 
-/// How many of 16 rising numbers are at most `limit` (both below 2^15).
-inline unsigned countUpTo(const std::uint16_t* sixteen, std::uint32_t limit) {
-#if defined(__SSE2__)
-  const __m128i wanted = _mm_set1_epi16(static_cast<short>(limit));
-  const __m128i low = _mm_cmpgt_epi16(_mm_load_si128(reinterpret_cast<const __m128i*>(sixteen)), wanted);
-  const __m128i high = _mm_cmpgt_epi16(_mm_load_si128(reinterpret_cast<const __m128i*>(sixteen + 8)), wanted);
-  // Bit 16 ends the search where all are small enough.
-  return static_cast<unsigned>(__builtin_ctz(_mm_movemask_epi8(_mm_packs_epi16(low, high)) | 0x10000));
+/// How many of 16 rising numbers are at most `limit`, which is below 2^16 - 1.
+[[gnu::always_inline]] inline unsigned countUpTo(const std::uint16_t* sixteen, std::uint32_t limit) {
+#if defined(__AVX512BW__) && defined(__AVX512VL__)
+  const __m256i wanted = _mm256_set1_epi16(static_cast<short>(limit));
+  const __m256i numbers = _mm256_load_si256(reinterpret_cast<const __m256i*>(sixteen));
+  return static_cast<unsigned>(__builtin_popcount(_mm256_cmple_epu16_mask(numbers, wanted)));
+#elif defined(__AVX2__)
+  const __m256i wanted = _mm256_set1_epi16(static_cast<short>(limit));
+  const __m256i numbers = _mm256_load_si256(reinterpret_cast<const __m256i*>(sixteen));
+  const __m256i atMost = _mm256_cmpeq_epi16(_mm256_max_epu16(numbers, wanted), wanted);
+  return static_cast<unsigned>(__builtin_popcount(static_cast<unsigned>(_mm256_movemask_epi8(atMost)))) / 2;
+#elif defined(__SSE2__)
+  // Saturated to 0 means at most `limit`.
+  const __m128i wanted = _mm_set1_epi16(static_cast<short>(limit)), zero = _mm_setzero_si128();
+  const auto atMost = [&](const std::uint16_t* eight) {
+    return _mm_cmpeq_epi16(_mm_subs_epu16(_mm_load_si128(reinterpret_cast<const __m128i*>(eight)), wanted), zero);
+  };
+  const int mask = _mm_movemask_epi8(_mm_packs_epi16(atMost(sixteen), atMost(sixteen + 8)));
+  return static_cast<unsigned>(__builtin_ctz(~static_cast<unsigned>(mask)));
 #else
   unsigned count = 0;
   for (int i = 0; i < 16; ++i) count += sixteen[i] <= limit;
@@ -41,8 +58,8 @@ class SymbolModel {
   static constexpr std::uint32_t kMaxTotal = 1 << 15;
 
   explicit SymbolModel(int symbols = Capacity) : m_symbols(static_cast<std::uint16_t>(symbols)) {
-    m_low.fill(kMaxTotal - 1);
-    m_first.fill(kMaxTotal - 1);
+    m_low.fill(0xFFFF);
+    m_first.fill(0xFFFF);
     m_counts.fill(0);
     for (int i = 0; i < symbols; ++i) m_counts[i] = 1;
     m_cycle = static_cast<std::uint32_t>(symbols);
@@ -50,18 +67,18 @@ class SymbolModel {
     m_cycle = m_untilRenewal = (static_cast<std::uint32_t>(symbols) + 6) >> 1;
   }
 
-  std::uint32_t low(unsigned symbol) const { return m_low[symbol]; }
+  /// Cumulated frequency below the symbol; of last() + 1 nothing useful.
+  std::uint32_t low(unsigned symbol) const { return m_low.data()[symbol]; }
   unsigned last() const { return m_symbols - 1u; }
 
-  /// The symbol whose share of [0, 2^15) holds `place`.
-  unsigned find(std::uint32_t place) const {
-    place = std::min(place, kMaxTotal - 1);
+  /// The symbol whose share of [0, 2^15) holds `place`; the last where it lies a little beyond.
+  [[gnu::always_inline]] unsigned find(std::uint32_t place) const {
     unsigned group = 0;
     if constexpr (kGroups > 1) {
       for (int block = 0; block < kFirst; block += 16) group += countUpTo(m_first.data() + block, place);
-      group = std::min(group - 1, kGroups - 1u);
+      --group;
     }
-    return std::min(16 * group + countUpTo(m_low.data() + 16 * group, place) - 1, last());
+    return 16 * group + countUpTo(m_low.data() + 16 * group, place) - 1;
   }
 
   void learn(unsigned symbol) {
@@ -72,7 +89,7 @@ class SymbolModel {
  private:
   static constexpr int kFirst = (kGroups + 15) / 16 * 16;
 
-  void renew() {
+  [[gnu::noinline]] void renew() {
     m_total += m_cycle;
     if (m_total > kMaxTotal) {
       m_total = 0;
@@ -90,8 +107,8 @@ class SymbolModel {
     m_untilRenewal = m_cycle;
   }
 
-  alignas(16) std::array<std::uint16_t, 16 * kGroups> m_low;
-  alignas(16) std::array<std::uint16_t, kFirst> m_first;  ///< every 16th of m_low
+  alignas(32) std::array<std::uint16_t, 16 * kGroups + 16> m_low;  ///< all bits set behind the last symbol's
+  alignas(32) std::array<std::uint16_t, kFirst> m_first;  ///< every 16th of m_low
   std::array<std::uint16_t, 16 * kGroups> m_counts;
   std::uint32_t m_total = 0, m_cycle = 0, m_untilRenewal = 0;
   std::uint16_t m_symbols;
@@ -108,7 +125,7 @@ class BitModel {
   }
 
  private:
-  void renew() {
+  [[gnu::noinline]] void renew() {
     m_total += m_cycle;
     if (m_total > 1 << 13) {
       m_total = (m_total + 1) >> 1;
@@ -178,74 +195,23 @@ class LazyModels {
 };
 
 /// The middle of five numbers that follow a sequence: each new one pushes out the largest or the
-/// smallest in turn.
+/// smallest, by turns. Without branches: where a number falls is as good as random.
 class StreamingMedian {
  public:
-  std::int32_t get() const { return m_values[2]; }
+  std::int32_t get() const { return m_sorted[2]; }
 
   void add(std::int32_t v) {
-    auto& s = m_values;
-    if (m_dropHigh) {
-      if (v < s[2]) {
-        s[4] = s[3];
-        s[3] = s[2];
-        insertLow(v);
-      } else {
-        if (v < s[3]) {
-          s[4] = s[3];
-          s[3] = v;
-        } else {
-          s[4] = v;
-        }
-        m_dropHigh = false;
-      }
-    } else {
-      if (s[2] < v) {
-        s[0] = s[1];
-        s[1] = s[2];
-        insertHigh(v);
-      } else {
-        if (s[1] < v) {
-          s[0] = s[1];
-          s[1] = v;
-        } else {
-          s[0] = v;
-        }
-        m_dropHigh = true;
-      }
-    }
+    const std::int32_t* keep = m_sorted.data() + (m_dropLargest ? 0 : 1);
+    const std::int32_t a = keep[0], b = keep[1], c = keep[2], d = keep[3], middle = m_sorted[2];
+    m_dropLargest = (v < middle) | (!m_dropLargest & (v == middle));
+    m_sorted = {std::min(a, v), std::max(a, std::min(b, v)), std::max(b, std::min(c, v)), std::max(c, std::min(d, v)),
+                std::max(d, v)};
   }
 
  private:
-  void insertLow(std::int32_t v) {
-    auto& s = m_values;
-    if (v < s[0]) {
-      s[2] = s[1];
-      s[1] = s[0];
-      s[0] = v;
-    } else if (v < s[1]) {
-      s[2] = s[1];
-      s[1] = v;
-    } else {
-      s[2] = v;
-    }
-  }
-  void insertHigh(std::int32_t v) {
-    auto& s = m_values;
-    if (s[4] < v) {
-      s[2] = s[3];
-      s[3] = s[4];
-      s[4] = v;
-    } else if (s[3] < v) {
-      s[2] = s[3];
-      s[3] = v;
-    } else {
-      s[2] = v;
-    }
-  }
-
-  std::array<std::int32_t, 5> m_values{};
-  bool m_dropHigh = true;
+  std::array<std::int32_t, 5> m_sorted{};
+  bool m_dropLargest = true;
 };
 
+}  // namespace ALIDADE_LAZ_SET
 }  // namespace alidade::laz
