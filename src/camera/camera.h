@@ -31,10 +31,11 @@ enum class CameraModel {
   OpenCv14,        ///< … tauX tauY
   OpenCvFisheye,   ///< COLMAP OPENCV_FISHEYE: fx fy cx cy k1 k2 k3 k4
   BrownHighOrder,  ///< fx fy cx cy k1..k6 q1..q3 p1 p2 t3..t6 shear skew
+  BrownSkewed,     ///< fx fy cx cy k1..k4 p1 p2 t3 t4 imageSkew: Metashape's frame camera
 };
 
 /// "OPENCV", "FULL_OPENCV" …: COLMAP's name where it has one, else ours ("OPENCV5", "OPENCV12",
-/// "OPENCV14", "BROWN_HIGH_ORDER"). parseCameraModel takes what cameraModelName gives.
+/// "OPENCV14", "BROWN_HIGH_ORDER", "BROWN_SKEWED"). parseCameraModel takes what cameraModelName gives.
 std::string_view cameraModelName(CameraModel model);
 std::optional<CameraModel> parseCameraModel(std::string_view name);
 

@@ -16,7 +16,8 @@ namespace alidade {
 ///     x'' = x radial + (2 p1 x y + p2 (r² + 2x²)) s + s1 r² + s2 r⁴ + shear x + skew y
 ///     y'' = y radial + (p1 (r² + 2y²) + 2 p2 x y) s + s3 r² + s4 r⁴
 ///
-/// followed by the sensor's tilt (tauX, tauY; OpenCV's 14-coefficient model) where there is one.
+/// followed by the sensor's tilt (tauX, tauY; OpenCV's 14-coefficient model) where there is one, and
+/// last by x'' += imageSkew y'': pixel axes that are not square to each other (Metashape's b2 over fx).
 /// k1..k3, q1..q3, p1, p2, s1..s4, tauX, tauY are OpenCV's k1..k3, k4..k6, p1, p2, s1..s4, tau
 /// (OpenCV 4.6, calib3d); k4..k6 of the numerator, t3..t6, shear and skew are the high-order Brown
 /// form of Gantner (2018), with the printed brackets mended.
@@ -33,6 +34,7 @@ struct BasicDistortion {
   std::array<P, 4> s{};  ///< thin prism
   P shear{}, skew{};
   P tauX{}, tauY{};      ///< sensor tilt, radians
+  P imageSkew{};         ///< of the finished image coordinates
   bool fisheye = false;
 
   template <class Q>

@@ -18,7 +18,7 @@ struct ModelRow {
   int parameters;
 };
 
-constexpr std::array<ModelRow, 11> models{{
+constexpr std::array<ModelRow, 12> models{{
     {CameraModel::SimplePinhole, "SIMPLE_PINHOLE", 3},
     {CameraModel::Pinhole, "PINHOLE", 4},
     {CameraModel::SimpleRadial, "SIMPLE_RADIAL", 4},
@@ -30,6 +30,7 @@ constexpr std::array<ModelRow, 11> models{{
     {CameraModel::OpenCv14, "OPENCV14", 18},
     {CameraModel::OpenCvFisheye, "OPENCV_FISHEYE", 8},
     {CameraModel::BrownHighOrder, "BROWN_HIGH_ORDER", 21},
+    {CameraModel::BrownSkewed, "BROWN_SKEWED", 13},
 }};
 
 const ModelRow& rowOf(CameraModel model) {
@@ -55,6 +56,8 @@ std::vector<double*> slots(CameraModel model, Distortion& d) {
     case CameraModel::BrownHighOrder:
       return {&d.k[0], &d.k[1], &d.k[2], &d.k[3], &d.k[4], &d.k[5], &d.q[0], &d.q[1], &d.q[2],
               &d.p1,   &d.p2,   &d.t[0], &d.t[1], &d.t[2], &d.t[3], &d.shear, &d.skew};
+    case CameraModel::BrownSkewed:
+      return {&d.k[0], &d.k[1], &d.k[2], &d.k[3], &d.p1, &d.p2, &d.t[0], &d.t[1], &d.imageSkew};
     default: brown.resize(static_cast<std::size_t>(parameterCount(model)) - 4); return brown;
   }
 }
@@ -124,7 +127,7 @@ Result<void> Intrinsics::validate() const {
   for (const double c : d.q) check(c);
   for (const double c : d.t) check(c);
   for (const double c : d.s) check(c);
-  for (const double c : {d.p1, d.p2, d.shear, d.skew, d.tauX, d.tauY}) check(c);
+  for (const double c : {d.p1, d.p2, d.shear, d.skew, d.tauX, d.tauY, d.imageSkew}) check(c);
   if (!finite) add("a distortion coefficient is not a finite number");
   if (d.fisheye != (model == CameraModel::OpenCvFisheye))
     add(fmt::format("the distortion does not fit the camera model {}", rowOf(model).name));

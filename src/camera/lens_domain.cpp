@@ -83,13 +83,13 @@ Distortion radialPart(const Distortion& d) {
 }
 
 Distortion flatPart(Distortion d) {
-  d.tauX = d.tauY = 0;
+  d.tauX = d.tauY = d.imageSkew = 0;
   return d;
 }
 
 bool hasOnlyRadialTerms(const Distortion& d) {
   if (d.fisheye) return true;
-  bool other = d.p1 != 0 || d.p2 != 0 || d.shear != 0 || d.skew != 0 || d.tauX != 0 || d.tauY != 0;
+  bool other = d.p1 != 0 || d.p2 != 0 || d.shear != 0 || d.skew != 0 || d.tauX != 0 || d.tauY != 0 || d.imageSkew != 0;
   for (const double c : d.s) other = other || c != 0;
   return !other;
 }

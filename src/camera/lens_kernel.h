@@ -40,7 +40,7 @@ ALIDADE_LENS_INLINE LensKind kindOf(const BasicDistortion<P>& d) {
   if (d.fisheye) return LensKind::Fisheye;
   const P zero(0);
   bool full = d.k[3] != zero || d.k[4] != zero || d.k[5] != zero || d.shear != zero || d.skew != zero ||
-              d.tauX != zero || d.tauY != zero;
+              d.tauX != zero || d.tauY != zero || d.imageSkew != zero;
   for (const P& c : d.q) full = full || c != zero;
   for (const P& c : d.s) full = full || c != zero;
   const bool decentred = d.p1 != zero || d.p2 != zero;
@@ -51,7 +51,7 @@ ALIDADE_LENS_INLINE LensKind kindOf(const BasicDistortion<P>& d) {
   return radial ? LensKind::Radial : LensKind::None;
 }
 
-/// Coefficients with what is derived from them once: the kind, and the sensor's tilt as a matrix.
+/// Coefficients with what is derived from them once: the kind, and the sensor's tilt and skew as a matrix.
 template <class P>
 struct Lens {
   BasicDistortion<P> d;
@@ -64,7 +64,7 @@ struct Lens {
   /// `parametersVary`: the coefficients are unknowns of a solver, so that a zero prunes nothing.
   [[gnu::always_inline]] explicit Lens(const BasicDistortion<P>& distortion, bool parametersVary = false)
       : d(distortion), kind(parametersVary ? varying(distortion) : kindOf(distortion)) {
-    tilted = !d.fisheye && (parametersVary || d.tauX != P(0) || d.tauY != P(0));
+    tilted = !d.fisheye && (parametersVary || d.tauX != P(0) || d.tauY != P(0) || d.imageSkew != P(0));
     if (tilted) setTilt();
   }
 
@@ -74,7 +74,7 @@ struct Lens {
   }
 
   /// OpenCV 4.6, calib3d, computeTiltProjectionMatrix: turn about x by tauX, then about y by tauY, then
-  /// back along z onto the sensor's plane.
+  /// back along z onto the sensor's plane. The skew of the image comes last.
   [[gnu::always_inline]] void setTilt() {
     using std::cos;
     using std::sin;
@@ -85,6 +85,7 @@ struct Lens {
       tilt[3 + i] = r[8] * r[3 + i] - r[5] * r[6 + i];
       tilt[6 + i] = r[6 + i];
     }
+    for (int i = 0; i < 3; ++i) tilt[i] = tilt[i] + d.imageSkew * tilt[3 + i];
   }
 };
 
@@ -236,6 +237,7 @@ BasicDistortion<Q> BasicDistortion<P>::cast() const {
   to.p1 = Q(p1), to.p2 = Q(p2);
   to.shear = Q(shear), to.skew = Q(skew);
   to.tauX = Q(tauX), to.tauY = Q(tauY);
+  to.imageSkew = Q(imageSkew);
   to.fisheye = fisheye;
   return to;
 }

@@ -53,6 +53,8 @@ inline std::vector<NamedCamera> lensCatalogue() {
       {"BrownHighOrder", made(BrownHighOrder, 2448, 2048,
                               {2200, 2205, 1230, 1020, -0.11, 0.08, -0.02, 0.004, -5e-4, 2e-5, 0.03, 0.01, -1e-3, 6e-4,
                                -4e-4, 0.2, -0.05, 0.01, 0.002, 3e-4, -2e-4})},
+      {"BrownSkewed", made(BrownSkewed, 1920, 1080,
+                           {1400, 1390, 955, 545, -0.28, 0.09, -0.02, 0.003, 1e-3, -7e-4, 0.1, -0.05, 0.012})},
       {"Drone", droneCamera()},
       {"StrongBarrelFoldsInsidePicture", made(OpenCv5, 1920, 1080, {700, 700, 960, 540, -0.35, 0.05, 0, 0, 0})},
       {"StrongPincushion", made(OpenCv5, 1920, 1080, {900, 900, 960, 540, 0.6, 0.4, 0, 0, 0.1})},

@@ -77,6 +77,16 @@ const std::vector<Published>& publishedModels() {
          const double yd = y * radial + (t1 * (r2 + 2 * y * y) + 2 * t2 * x * y) * growth;
          return glm::dvec2(p[0] * xd + p[2], p[1] * yd + p[3]);
        }},
+      // Metashape's manual, "Frame cameras": u = w/2 + cx + x' f + x' b1 + y' b2; fx = f + b1, p[12] = b2 / fx.
+      {BrownSkewed, "BROWN_SKEWED", {500, 510, 320, 240, -0.03, 0.007, 0.001, -2e-3, 0.002, -0.003, 0.1, -0.05, 0.004},
+       [](P p, double x, double y) {
+         const double r2 = x * x + y * y, r4 = r2 * r2;
+         const double radial = 1 + p[4] * r2 + p[5] * r4 + p[6] * r4 * r2 + p[7] * r4 * r4;
+         const double growth = 1 + p[10] * r2 + p[11] * r4, b2 = p[12] * p[0];
+         const double xd = x * radial + (2 * p[8] * x * y + p[9] * (r2 + 2 * x * x)) * growth;
+         const double yd = y * radial + (p[8] * (r2 + 2 * y * y) + 2 * p[9] * x * y) * growth;
+         return glm::dvec2(p[0] * xd + b2 * yd + p[2], p[1] * yd + p[3]);
+       }},
   };
   return all;
 }

@@ -32,6 +32,7 @@ inline std::vector<Camera> camerasOfEveryModel() {
       {CameraModel::OpenCvFisheye, {1800, 1805, cx, cy, -0.02, 0.006, -0.003, 0.0004}},
       {CameraModel::BrownHighOrder, {f,     g,     cx,   cy,    -0.2, 0.08, -0.02, 0.003, -2e-4, 1e-5, 0.02,
                                      -0.01, 0.002, 5e-4, -4e-4, 0.1,  0.02, 0.01,  0.001, 8e-4,  -6e-4}},
+      {CameraModel::BrownSkewed, {f, g, cx, cy, -0.2, 0.08, -0.02, 0.003, 5e-4, -4e-4, 0.1, 0.02, 0.008}},
   };
   std::vector<Camera> cameras;
   for (const auto& [model, parameters] : lenses) {
