@@ -28,7 +28,16 @@ class OverlayDevice {
   virtual Result<Output> draw(const DrawList& list) = 0;
 };
 
-/// Vulkan 1.3, off screen. Error where no Vulkan driver is installed or it lacks what is needed.
-Result<std::unique_ptr<OverlayDevice>> createVulkanDevice();
+/// A visibility buffer on the processor: every thread, the widest vectors it has (ALIDADE_SIMD=scalar|avx2
+/// holds it back). Needs no driver.
+std::unique_ptr<OverlayDevice> createCpuDevice();
+
+/// Vulkan 1.3, off screen. Error where no Vulkan driver is installed or it lacks what is needed. A driver
+/// that runs on the processor, as lavapipe does, counts unless `gpuAlone`.
+Result<std::unique_ptr<OverlayDevice>> createVulkanDevice(bool gpuAlone = false);
+
+/// Vulkan where there is a GPU, else the processor. ALIDADE_DEVICE=cpu|vulkan decides; error where it names
+/// something else, or a Vulkan that is not there.
+Result<std::unique_ptr<OverlayDevice>> createOverlayDevice();
 
 }  // namespace alidade

@@ -134,7 +134,7 @@ const ColourImage* OverlayRenderer::Impl::imageFor(const FrameDescription& frame
 }
 
 Result<std::unique_ptr<OverlayRenderer>> OverlayRenderer::create() {
-  auto device = createVulkanDevice();
+  auto device = createOverlayDevice();
   if (!device) return fail(device.error());
   return std::make_unique<OverlayRenderer>(std::move(*device));
 }

@@ -417,9 +417,12 @@ Result<OverlayDevice::Output> VulkanOverlayDevice::draw(const DrawList& list) {
 
 }  // namespace
 
-Result<std::unique_ptr<OverlayDevice>> createVulkanDevice() {
+Result<std::unique_ptr<OverlayDevice>> createVulkanDevice(bool gpuAlone) {
   auto device = GpuDevice::create();
   if (!device) return fail(device.error());
+  if (gpuAlone && (*device)->isSoftware())
+    return fail("Vulkan has no GPU here", (*device)->name(),
+                "Set ALIDADE_DEVICE=vulkan to draw with it all the same");
   auto overlay = std::make_unique<VulkanOverlayDevice>(std::move(*device));
   if (auto made = overlay->makePipelines(); !made) return fail(made.error());
   return overlay;

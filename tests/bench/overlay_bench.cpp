@@ -60,18 +60,24 @@ void overlayDrawList(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(buildDrawList(frame, frame.camera).triangles.size());
 }
 
+Result<std::unique_ptr<OverlayDevice>> deviceOf(bool isCpu) {
+  if (isCpu) return createCpuDevice();
+  return createVulkanDevice();
+}
+
 /// A frame from its description to the result images, the first one aside, which compiles shaders.
-void overlayFrame(benchmark::State& state) {
-  auto device = createVulkanDevice();
+void overlayFrame(benchmark::State& state, bool isCpu, const DisplaySettings& display, bool hides,
+                  bool listOnce) {
+  auto device = deviceOf(isCpu);
   if (!device) return state.SkipWithError(device.error().text().c_str());
-  const FrameDescription frame = hallFrame();
+  FrameDescription frame = hallFrame();
+  frame.display = display;
   const DepthImage scan(1920, 1080, 45.0f);
-  std::size_t triangles = 0;
+  DrawList list = buildDrawList(frame, frame.camera);
   const auto drawOnce = [&]() -> Result<OverlayDevice::Output> {
-    DrawList list = buildDrawList(frame, frame.camera);
+    if (!listOnce) list = buildDrawList(frame, frame.camera);
     list.image = frame.image.get();
-    list.scanDepth = &scan;
-    triangles = list.triangles.size() / 3;
+    list.scanDepth = hides ? &scan : nullptr;
     return (*device)->draw(list);
   };
   if (auto first = drawOnce(); !first) return state.SkipWithError(first.error().text().c_str());
@@ -80,8 +86,25 @@ void overlayFrame(benchmark::State& state) {
     if (!output) return state.SkipWithError(output.error().text().c_str());
     benchmark::DoNotOptimize(output->colour.data());
   }
-  state.counters["triangles"] = static_cast<double>(triangles);
+  state.counters["triangles"] = static_cast<double>(list.triangles.size() / 3);
   state.SetLabel((*device)->name());
+}
+
+/// Faces, edges and the hidden layer, draw list included.
+void overlayWholeFrame(benchmark::State& state, bool isCpu) {
+  overlayFrame(state, isCpu, {}, true, false);
+}
+
+/// The device alone on a finished draw list.
+void overlayDevice(benchmark::State& state, bool isCpu) {
+  overlayFrame(state, isCpu, {}, true, true);
+}
+
+/// The device alone, faces before the picture and nothing that hides.
+void overlayFaces(benchmark::State& state, bool isCpu) {
+  DisplaySettings display;
+  display.designEdges = false;
+  overlayFrame(state, isCpu, display, false, true);
 }
 
 BENCHMARK(overlayDrawList)
@@ -89,11 +112,20 @@ BENCHMARK(overlayDrawList)
     ->Unit(benchmark::kMillisecond)
     ->MeasureProcessCPUTime()
     ->UseRealTime();
-BENCHMARK(overlayFrame)
-    ->Name("overlay_frame_1080p_100k_triangles")
-    ->Unit(benchmark::kMillisecond)
-    ->MeasureProcessCPUTime()
-    ->UseRealTime();
+#define ALIDADE_OVERLAY_ROW(function, name)  \
+  BENCHMARK_CAPTURE(function, cpu, true)     \
+      ->Name(name "/cpu")                    \
+      ->Unit(benchmark::kMillisecond)        \
+      ->MeasureProcessCPUTime()              \
+      ->UseRealTime();                       \
+  BENCHMARK_CAPTURE(function, vulkan, false) \
+      ->Name(name "/vulkan")                 \
+      ->Unit(benchmark::kMillisecond)        \
+      ->MeasureProcessCPUTime()              \
+      ->UseRealTime()
+ALIDADE_OVERLAY_ROW(overlayWholeFrame, "overlay_frame_1080p_100k_triangles");
+ALIDADE_OVERLAY_ROW(overlayDevice, "overlay_device_1080p_100k_triangles");
+ALIDADE_OVERLAY_ROW(overlayFaces, "overlay_faces_1080p_100k_triangles");
 
 }  // namespace
 }  // namespace alidade

@@ -31,12 +31,12 @@ FrameDescription smallScene() {
 }
 
 /// A wall before the left third, nothing known in the middle, free sight on the right.
-ColourImage drawn(const FrameDescription& frame) {
+ColourImage drawn(const FrameDescription& frame, bool isCpu) {
   DepthImage scan(kWidth, kHeight, std::numeric_limits<float>::infinity());
   for (int y = 0; y < kHeight; ++y)
     for (int x = 0; x < 2 * kWidth / 3; ++x)
       scan.at(x, y) = x < kWidth / 3 ? 6.0f : std::numeric_limits<float>::quiet_NaN();
-  auto device = createVulkanDevice();
+  auto device = isCpu ? Result<std::unique_ptr<OverlayDevice>>(createCpuDevice()) : createVulkanDevice();
   EXPECT_TRUE(device) << device.error().text();
   if (!device) return {};
   DrawList list = buildDrawList(frame, frame.camera);
@@ -47,23 +47,28 @@ ColourImage drawn(const FrameDescription& frame) {
   return output ? std::move(output->colour) : ColourImage();
 }
 
+/// One baseline for both devices.
+class OverlayImage : public testing::TestWithParam<bool> {};
+INSTANTIATE_TEST_SUITE_P(Both, OverlayImage, testing::Bool(),
+                         [](const auto& which) { return std::string(which.param ? "cpu" : "vulkan"); });
+
 }  // namespace
 
-TEST(OverlayImage, DashedHiddenPartsMatchTheirBaseline) {
+TEST_P(OverlayImage, DashedHiddenPartsMatchTheirBaseline) {
   FrameDescription frame = smallScene();
   frame.display.hidden = HiddenStyle::Dash;
-  const auto comparison = compareToBaseline(drawn(frame), "overlay-dash");
+  const auto comparison = compareToBaseline(drawn(frame, GetParam()), "overlay-dash");
   EXPECT_TRUE(comparison.same) << comparison.report;
 }
 
-TEST(OverlayImage, GhostedHiddenPartsMatchTheirBaseline) {
+TEST_P(OverlayImage, GhostedHiddenPartsMatchTheirBaseline) {
   FrameDescription frame = smallScene();
   frame.designs[0].selected = {2};
-  const auto comparison = compareToBaseline(drawn(frame), "overlay-ghost");
+  const auto comparison = compareToBaseline(drawn(frame, GetParam()), "overlay-ghost");
   EXPECT_TRUE(comparison.same) << comparison.report;
 }
 
-TEST(OverlayImage, AColumnShiftedByTwentyCentimetresDoesNotPassForTheBaseline) {
+TEST_P(OverlayImage, AColumnShiftedByTwentyCentimetresDoesNotPassForTheBaseline) {
   if (const char* update = std::getenv("ALIDADE_UPDATE_BASELINES"); update && *update == '1')
     GTEST_SKIP() << "baselines are being written";
   FrameDescription frame = smallScene();
@@ -71,7 +76,7 @@ TEST(OverlayImage, AColumnShiftedByTwentyCentimetresDoesNotPassForTheBaseline) {
   auto shifted = std::make_shared<DesignModel>(*frame.designs[0].model);
   shifted->origin.x += 0.2;
   frame.designs[0].model = shifted;
-  const auto comparison = compareToBaseline(drawn(frame), "overlay-dash");
+  const auto comparison = compareToBaseline(drawn(frame, GetParam()), "overlay-dash");
   EXPECT_FALSE(comparison.same);
   EXPECT_NE(comparison.report.find("overlay-dash-difference.png"), std::string::npos);
   EXPECT_TRUE(std::filesystem::exists(std::string(ALIDADE_IMAGE_DIFF_DIR) + "/overlay-dash-difference.png"));

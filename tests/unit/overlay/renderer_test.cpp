@@ -59,7 +59,8 @@ FrameDescription boxesFrame(const glm::dvec3& origin = glm::dvec3(0), int width 
   return frame;
 }
 
-class DeviceTest : public testing::Test {
+/// Every test below holds for both devices.
+class DeviceTest : public testing::TestWithParam<const char*> {
  protected:
   static void SetUpTestSuite() {
     s_sink = addLogSink([](LogLevel level, const std::string& message) {
@@ -68,11 +69,13 @@ class DeviceTest : public testing::Test {
     });
     auto made = createVulkanDevice();
     ASSERT_TRUE(made) << made.error().text();
-    s_device = made->release();
+    s_vulkan = made->release();
+    s_cpu = createCpuDevice().release();
   }
   static void TearDownTestSuite() {
-    delete s_device;
-    s_device = nullptr;
+    delete s_vulkan;
+    delete s_cpu;
+    s_vulkan = s_cpu = nullptr;
     removeLogSink(s_sink);
     EXPECT_EQ(s_validationMessages, 0) << "the validation layer objects; see the log above";
   }
@@ -83,15 +86,18 @@ class DeviceTest : public testing::Test {
     list.image = frame.image.get();
     list.scanDepth = scan;
     list.pointColour = points;
-    auto output = s_device->draw(list);
+    auto output = (std::string(GetParam()) == "cpu" ? s_cpu : s_vulkan)->draw(list);
     EXPECT_TRUE(output) << output.error().text();
     return output ? std::move(*output) : OverlayDevice::Output{};
   }
-  static OverlayDevice* s_device;
+  static OverlayDevice *s_vulkan, *s_cpu;
   static int s_sink, s_validationMessages;
 };
 int DeviceTest::s_sink = 0, DeviceTest::s_validationMessages = 0;
-OverlayDevice* DeviceTest::s_device = nullptr;
+OverlayDevice *DeviceTest::s_vulkan = nullptr, *DeviceTest::s_cpu = nullptr;
+
+INSTANTIATE_TEST_SUITE_P(Both, DeviceTest, testing::Values("cpu", "vulkan"),
+                         [](const auto& which) { return std::string(which.param); });
 
 std::size_t differingPixels(const ColourImage& a, const ColourImage& b, int least = 3) {
   std::size_t count = 0;
@@ -104,7 +110,7 @@ std::size_t differingPixels(const ColourImage& a, const ColourImage& b, int leas
 
 }  // namespace
 
-TEST_F(DeviceTest, EveryPixelIsVisibleHiddenOrUnknownAsTheScanSays) {
+TEST_P(DeviceTest, EveryPixelIsVisibleHiddenOrUnknownAsTheScanSays) {
   const FrameDescription frame = boxesFrame();
   const DepthImage scan = analyticScan(kWidth, kHeight);
   const auto out = draw(frame, &scan);
@@ -126,7 +132,7 @@ TEST_F(DeviceTest, EveryPixelIsVisibleHiddenOrUnknownAsTheScanSays) {
   for (const int count : counts) EXPECT_GT(count, 1000);
 }
 
-TEST_F(DeviceTest, DepthAndElementAreThoseOfTheNearestFaceAlongTheExactRay) {
+TEST_P(DeviceTest, DepthAndElementAreThoseOfTheNearestFaceAlongTheExactRay) {
   const FrameDescription frame = boxesFrame();
   const auto out = draw(frame, nullptr);
   const DesignModel& model = *frame.designs[0].model;
@@ -173,13 +179,13 @@ TEST_F(DeviceTest, DepthAndElementAreThoseOfTheNearestFaceAlongTheExactRay) {
   EXPECT_LT(worst, 1) << "depth is off by more than a tenth of a pixel and 0.1 mm a metre";
 }
 
-TEST_F(DeviceTest, APictureTenThousandKilometresFromTheOriginIsTheSame) {
+TEST_P(DeviceTest, APictureTenThousandKilometresFromTheOriginIsTheSame) {
   const auto near = draw(boxesFrame(), nullptr);
   const auto far = draw(boxesFrame({1.0e7, 9.0e6, 500}), nullptr);
   EXPECT_LE(differingPixels(near.colour, far.colour), near.colour.size() / 5000);
 }
 
-TEST_F(DeviceTest, TheThreeHiddenStylesDifferAndHidingShowsTheImage) {
+TEST_P(DeviceTest, TheThreeHiddenStylesDifferAndHidingShowsTheImage) {
   const DepthImage scan = analyticScan(kWidth, kHeight);
   FrameDescription frame = boxesFrame();
   ColourImage pictures[3];
@@ -219,7 +225,7 @@ FrameDescription buriedFrame() {
   return frame;
 }
 
-TEST_F(DeviceTest, WhatLiesBuriedShowsThroughTheVisibleFaceAndTheSmallestShowsFirst) {
+TEST_P(DeviceTest, WhatLiesBuriedShowsThroughTheVisibleFaceAndTheSmallestShowsFirst) {
   FrameDescription frame = buriedFrame();
   const DepthImage scan(kWidth, kHeight, 10.0f);
   ColourImage pictures[3];
@@ -266,7 +272,7 @@ TEST_F(DeviceTest, WhatLiesBuriedShowsThroughTheVisibleFaceAndTheSmallestShowsFi
   EXPECT_LT(std::abs(ghost.r - hide.r), 60) << "and still readable";
 }
 
-TEST_F(DeviceTest, ASolidAloneShowsNothingOfItsOwnInside) {
+TEST_P(DeviceTest, ASolidAloneShowsNothingOfItsOwnInside) {
   FrameDescription frame = buriedFrame();
   frame.designs[0].elementVisible = {1, 0, 0};
   const DepthImage scan(kWidth, kHeight, 10.0f);
@@ -278,7 +284,7 @@ TEST_F(DeviceTest, ASolidAloneShowsNothingOfItsOwnInside) {
   EXPECT_EQ(differingPixels(hide.colour, ghost.colour, 2), 0u);
 }
 
-TEST_F(DeviceTest, SpecksOfTheScanAreStyledAsWhatIsAroundThemAndReportedAsTheyAre) {
+TEST_P(DeviceTest, SpecksOfTheScanAreStyledAsWhatIsAroundThemAndReportedAsTheyAre) {
   FrameDescription frame = buriedFrame();
   frame.designs[0].elementVisible = {1, 0, 0};
   DepthImage scan(kWidth, kHeight, 10.0f);
@@ -294,7 +300,7 @@ TEST_F(DeviceTest, SpecksOfTheScanAreStyledAsWhatIsAroundThemAndReportedAsTheyAr
   EXPECT_GT(differingPixels(clean.colour, draw(frame, &scan).colour, 8), 1000u) << "an area is no speck";
 }
 
-TEST_F(DeviceTest, UnknownIsDrawnInAShapeOfItsOwn) {
+TEST_P(DeviceTest, UnknownIsDrawnInAShapeOfItsOwn) {
   FrameDescription frame = boxesFrame();
   frame.display.hidden = HiddenStyle::Dash;
   const DepthImage unknown(kWidth, kHeight, std::numeric_limits<float>::quiet_NaN());
@@ -306,7 +312,7 @@ TEST_F(DeviceTest, UnknownIsDrawnInAShapeOfItsOwn) {
   EXPECT_GT(differingPixels(a.colour, c.colour, 8), 3000u);
 }
 
-TEST_F(DeviceTest, PassesCanBeSwitchedOff) {
+TEST_P(DeviceTest, PassesCanBeSwitchedOff) {
   FrameDescription frame = boxesFrame();
   frame.display.designPass = false;
   const auto imageAlone = draw(frame, nullptr);
@@ -331,7 +337,7 @@ TEST_F(DeviceTest, PassesCanBeSwitchedOff) {
   EXPECT_EQ(noFaces.element.at(240, 160), all.element.at(240, 160)) << "picking goes on without faces";
 }
 
-TEST_F(DeviceTest, GrayscaleSwitchesTakeTheColourOutOfImageAndDesign) {
+TEST_P(DeviceTest, GrayscaleSwitchesTakeTheColourOutOfImageAndDesign) {
   FrameDescription frame = boxesFrame();
   frame.display.grayscaleImage = frame.display.grayscaleDesign = true;
   const auto out = draw(frame, nullptr);
@@ -342,7 +348,7 @@ TEST_F(DeviceTest, GrayscaleSwitchesTakeTheColourOutOfImageAndDesign) {
   }
 }
 
-TEST_F(DeviceTest, PointsLieHalfTransparentOverTheRest) {
+TEST_P(DeviceTest, PointsLieHalfTransparentOverTheRest) {
   const FrameDescription frame = boxesFrame();
   ColourImage points(kWidth, kHeight, {0, 0, 0, 0});
   points.at(100, 50) = {255, 0, 0, 255};
@@ -351,7 +357,7 @@ TEST_F(DeviceTest, PointsLieHalfTransparentOverTheRest) {
   EXPECT_NEAR(with.colour.at(100, 50).r, (255 + without.colour.at(100, 50).r) / 2.0, 1.5);
 }
 
-TEST_F(DeviceTest, SelectionChangesTheLook) {
+TEST_P(DeviceTest, SelectionChangesTheLook) {
   FrameDescription frame = boxesFrame();
   const auto plain = draw(frame, nullptr);
   frame.designs[0].selected = {1};
@@ -366,7 +372,7 @@ TEST_F(DeviceTest, SelectionChangesTheLook) {
   EXPECT_GT(changed, ofElement * 9 / 10);
 }
 
-TEST_F(DeviceTest, AnotherImageSizeIsStretchedOverTheResult) {
+TEST_P(DeviceTest, AnotherImageSizeIsStretchedOverTheResult) {
   FrameDescription frame = boxesFrame();
   frame.display.designPass = false;
   frame.image = stripedPicture(kWidth / 4, kHeight / 4);
@@ -375,7 +381,7 @@ TEST_F(DeviceTest, AnotherImageSizeIsStretchedOverTheResult) {
   EXPECT_EQ(out.colour.at(kWidth - 3, kHeight - 3), frame.image->at(kWidth / 4 - 1, kHeight / 4 - 1));
 }
 
-TEST_F(DeviceTest, FramesOfChangingSizeFollowEachOther) {
+TEST_P(DeviceTest, FramesOfChangingSizeFollowEachOther) {
   for (const auto& [w, h] : {std::pair{64, 48}, {480, 320}, {31, 17}, {480, 320}}) {
     const FrameDescription frame = boxesFrame(glm::dvec3(0), w, h);
     EXPECT_EQ(draw(frame, nullptr).colour.width(), w);
@@ -385,7 +391,7 @@ TEST_F(DeviceTest, FramesOfChangingSizeFollowEachOther) {
 TEST(OverlayRenderer, GivesAPictureWithCountsMarksAndNames) {
   auto renderer = OverlayRenderer::create();
   ASSERT_TRUE(renderer) << renderer.error().text();
-  EXPECT_EQ((*renderer)->deviceName().rfind("Vulkan: ", 0), 0u);
+  EXPECT_FALSE((*renderer)->deviceName().empty());
   FrameDescription frame = boxesFrame(glm::dvec3(2.0e6, 5.0e5, 300), 1280, 800);
   const glm::dvec3 origin = frame.designs[0].model->origin;
   for (int i = 0; i < 6; ++i)
