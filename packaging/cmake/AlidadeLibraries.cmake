@@ -27,3 +27,11 @@ find_package(VTK 9.1 REQUIRED COMPONENTS
   InteractionWidgets RenderingAnnotation RenderingCore RenderingFreeType RenderingOpenGL2 RenderingUI)
 
 find_library(IFCPP_LIBRARY NAMES IfcPlusPlus REQUIRED)
+
+# PCL's own package configuration asks for every library that some part of it may use.
+find_path(PCL_INCLUDE pcl/point_cloud.h PATH_SUFFIXES pcl-1.13 pcl-1.14 pcl REQUIRED)
+set(PCL_LIBRARIES)
+foreach(part common kdtree search features filters sample_consensus segmentation surface)
+  find_library(PCL_${part}_LIBRARY NAMES pcl_${part} REQUIRED)
+  list(APPEND PCL_LIBRARIES ${PCL_${part}_LIBRARY})
+endforeach()
