@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "plugin_api/import_slip.h"
 #include "plugin_api/text_file.h"
 
 namespace alidade {
@@ -32,23 +33,11 @@ std::optional<TumLine> numbersOf(std::string_view line) {
 
 double quaternionLength(const TumLine& n) { return std::hypot(std::hypot(n[4], n[5]), std::hypot(n[6], n[7])); }
 
-/// Counts a slip, keeps its first place, and becomes one warning.
-struct Slip {
-  std::size_t count = 0;
-  std::string place;
-  void note(const std::string& where) {
-    if (count++ == 0) place = where;
-  }
-  void tell(std::vector<ImportWarning>& warnings, const std::string& what) const {
-    if (count > 0) warnings.push_back({fmt::format("{} {}", count, what), place});
-  }
-};
-
 }  // namespace
 
 Result<CameraSet> parseTumTrajectory(std::string_view text, const std::string& path, const Progress& progress) {
   CameraSet set;
-  Slip unsorted, unnormalised, twice;
+  ImportSlip unsorted, unnormalised, twice;
   LineReader lines(text);
   for (std::string_view line; lines.next(line);) {
     const std::string_view words = trimmed(line);

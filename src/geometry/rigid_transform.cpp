@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Dense>
+
 namespace alidade {
 
 RigidTransform RigidTransform::fromMatrix(const glm::dmat3& rotationMatrix, const glm::dvec3& translation) {
@@ -37,6 +39,24 @@ bool RigidTransform::isFinite() const {
     if (!std::isfinite(translation[i])) return false;
   const double norm = glm::dot(rotation, rotation);
   return std::isfinite(norm) && norm > 0.5 && norm < 2.0;
+}
+
+std::optional<glm::dquat> nearestRotation(const glm::dmat3& matrix, double tolerance) {
+  const glm::dmat3 deviation = glm::transpose(matrix) * matrix - glm::dmat3(1.0);
+  for (int c = 0; c < 3; ++c)
+    for (int r = 0; r < 3; ++r)
+      if (!(std::abs(deviation[c][r]) <= tolerance)) return std::nullopt;
+  if (!(glm::determinant(matrix) > 0)) return std::nullopt;
+  // The nearest in the sum of squares: U Vᵀ of the singular value decomposition.
+  Eigen::Matrix3d m;
+  for (int c = 0; c < 3; ++c)
+    for (int r = 0; r < 3; ++r) m(r, c) = matrix[c][r];
+  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(m, Eigen::ComputeFullU | Eigen::ComputeFullV);
+  const Eigen::Matrix3d nearest = svd.matrixU() * svd.matrixV().transpose();
+  glm::dmat3 rotation;
+  for (int c = 0; c < 3; ++c)
+    for (int r = 0; r < 3; ++r) rotation[c][r] = nearest(r, c);
+  return glm::normalize(glm::quat_cast(rotation));
 }
 
 double rotationAngleBetween(const RigidTransform& a, const RigidTransform& b) {

@@ -3,6 +3,8 @@
 
 #pragma once
 
+#include <optional>
+
 #include <glm/glm.hpp>
 #include <glm/gtc/quaternion.hpp>
 
@@ -30,6 +32,10 @@ struct RigidTransform {
   glm::dvec3 centre() const { return inverse().translation; }
   bool isFinite() const;
 };
+
+/// The rotation nearest to a matrix that a file calls one; nothing where an entry of RᵀR - I is beyond
+/// `tolerance`, or the matrix mirrors or is not finite.
+std::optional<glm::dquat> nearestRotation(const glm::dmat3& matrix, double tolerance = 1e-3);
 
 /// Angle in radians between the two attitudes, in [0, pi].
 double rotationAngleBetween(const RigidTransform& a, const RigidTransform& b);

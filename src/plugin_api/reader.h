@@ -105,6 +105,9 @@ struct TiePoint {
 /// Cameras, poses, or both. Everything in Alidade's conventions: OpenCV axes and pixel origin.
 struct CameraSet {
   std::vector<Intrinsics> cameras;
+  /// Indices of cameras whose file states no picture size (Bundler, BAL): they have the smallest size that
+  /// holds the observations, and its middle as principal point. Whoever knows a picture centres them on it.
+  std::vector<int> camerasWithoutSize;
   std::vector<PosedPicture> pictures;  ///< in file order
   std::vector<TiePoint> tiePoints;
   std::string details;

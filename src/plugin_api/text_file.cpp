@@ -3,6 +3,7 @@
 
 #include "plugin_api/text_file.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cstdio>
@@ -122,6 +123,36 @@ std::optional<std::int64_t> parseInteger(std::string_view text) {
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
   return value;
+}
+
+std::optional<std::vector<double>> parseNumbers(std::string_view text, std::size_t limit) {
+  std::vector<double> numbers;
+  FieldReader fields(text);
+  for (std::string_view field; fields.next(field);) {
+    const auto number = parseNumber(field);
+    if (!number || numbers.size() == limit) return std::nullopt;
+    numbers.push_back(*number);
+  }
+  return numbers;
+}
+
+std::size_t jsonDepth(std::string_view text) {
+  std::size_t depth = 0, deepest = 0;
+  bool inString = false;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    if (inString) {
+      if (c == '\\') ++i;
+      else if (c == '"') inString = false;
+    } else if (c == '"') {
+      inString = true;
+    } else if (c == '[' || c == '{') {
+      deepest = std::max(deepest, ++depth);
+    } else if ((c == ']' || c == '}') && depth > 0) {
+      --depth;
+    }
+  }
+  return deepest;
 }
 
 std::string quotedWords(std::string_view text, std::size_t limit) {

@@ -65,6 +65,13 @@ std::string lowerCase(std::string_view text);
 std::optional<double> parseNumber(std::string_view text);
 std::optional<std::int64_t> parseInteger(std::string_view text);
 
+/// Numbers between white space and nothing else; nothing where there is another word, or more than `limit` of them.
+std::optional<std::vector<double>> parseNumbers(std::string_view text, std::size_t limit);
+
+/// Brackets ([ and {) open at the same time in a JSON text, those within strings left out: asked before a
+/// parser that calls itself.
+std::size_t jsonDepth(std::string_view text);
+
 /// At most `limit` characters of a file's own words for an error message, made printable.
 std::string quotedWords(std::string_view text, std::size_t limit = 40);
 

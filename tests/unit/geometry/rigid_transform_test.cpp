@@ -34,4 +34,20 @@ TEST(RigidTransform, AnInterpolatedCameraMovesOnTheStraightLine) {
   EXPECT_NEAR(rotationAngleBetween(a, middle), rotationAngleBetween(middle, b), 1e-12);
 }
 
+TEST(RigidTransform, AMatrixFromAFileIsMadeARotationOrRefused) {
+  const glm::dmat3 exact = glm::mat3_cast(glm::angleAxis(0.7, glm::normalize(glm::dvec3(1, 2, -3))));
+  const auto again = nearestRotation(exact);
+  ASSERT_TRUE(again);
+  EXPECT_NEAR(rotationAngleBetween({*again, {}}, RigidTransform::fromMatrix(exact, {})), 0, 1e-15);
+  glm::dmat3 rounded = exact;
+  for (int c = 0; c < 3; ++c)
+    for (int r = 0; r < 3; ++r) rounded[c][r] = std::round(exact[c][r] * 1e4) / 1e4;
+  ASSERT_TRUE(nearestRotation(rounded));
+  EXPECT_LT(rotationAngleBetween({*nearestRotation(rounded), {}}, RigidTransform::fromMatrix(exact, {})), 1e-4);
+  EXPECT_FALSE(nearestRotation(2.0 * exact));
+  EXPECT_FALSE(nearestRotation(glm::dmat3(1, 0, 0, 0, 1, 0, 0, 0, -1))) << "a mirror";
+  EXPECT_FALSE(nearestRotation(glm::dmat3(0.0)));
+  EXPECT_FALSE(nearestRotation(glm::dmat3(std::nan(""), 0, 0, 0, 1, 0, 0, 0, 1)));
+}
+
 }  // namespace alidade
