@@ -43,7 +43,7 @@ const std::map<std::string, std::vector<std::string>> kOwners = {
     {"ceres/", {"src/adjust"}},
     {"pcl/", {"src/cleaning"}},
     {"opencv2/", {"src/io", "plugins/opencv-calib", "plugins/pictures", "plugins/e57"}},
-    {"pugixml", {"plugins/e57"}},
+    {"pugixml", {"plugins/e57", "plugins/metashape", "plugins/realitycapture"}},
     {"ifcpp/", {"plugins/ifc"}},
     {"assimp/", {"plugins/mesh"}},
     {"embree3/", {"src/simulate", "src/inspect"}},
