@@ -19,6 +19,7 @@ find_package(embree 3 REQUIRED)
 find_package(GTest REQUIRED)
 find_package(benchmark REQUIRED)
 find_package(PNG REQUIRED)
+find_package(CURL REQUIRED)
 find_package(pugixml REQUIRED)
 
 # Never GUISupportQt: Debian's is built on Qt 5.

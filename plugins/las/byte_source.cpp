@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/input_file.h"
+#include "las/http_source.h"
 
 namespace alidade {
 
@@ -35,6 +36,7 @@ bool isWebAddress(const std::string& path) {
 }
 
 Result<std::shared_ptr<const ByteSource>> ByteSource::open(const std::string& path) {
+  if (isWebAddress(path)) return openHttpSource(path);
   auto file = InputFile::open(path);
   if (!file) return fail(file.error());
   return std::make_shared<const FileSource>(std::move(*file));

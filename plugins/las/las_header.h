@@ -12,6 +12,7 @@
 #include "base/error.h"
 #include "geometry/bounds.h"
 #include "las/byte_source.h"
+#include "las/copc_info.h"
 #include "las/laz_layout.h"
 #include "plugin_api/reader.h"
 
@@ -60,6 +61,7 @@ struct LasHeader {
   std::uint64_t evlrOffset = 0;
   std::uint32_t evlrCount = 0;
   std::optional<LazLayout> laz;  ///< where the points are compressed
+  std::optional<CopcInfo> copc;  ///< where the chunks are the nodes of an octree
 
   std::string crs;          ///< WKT, "EPSG:n" or empty
   std::string crsNote;      ///< vertical system and the like, for `details`

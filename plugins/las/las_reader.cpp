@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "las/copc_hierarchy.h"
 #include "las/las_header.h"
 #include "las/las_points.h"
 #include "las/las_runs.h"
@@ -147,10 +148,17 @@ Result<void> LasReader::sample(const std::string& path, std::uint64_t wanted, co
   const auto header = readLasHeader(**file);
   if (!header) return fail(header.error());
   if (header->pointCount == 0 || wanted == 0) return {};
-  const auto runs = runsOf(**file, *header);
-  if (!runs) return fail(runs.error());
-  if (!*runs) return ScanReader::sample(path, wanted, sink, progress);
-  const auto some = sampleOf(**runs, *header, wanted);
+  std::vector<LasRun> some;
+  if (header->copc) {
+    auto coarsest = CopcHierarchy(**file, *header).coarsest(wanted);
+    if (!coarsest) return fail(coarsest.error());
+    some = std::move(*coarsest);
+  } else {
+    const auto runs = runsOf(**file, *header);
+    if (!runs) return fail(runs.error());
+    if (!*runs) return ScanReader::sample(path, wanted, sink, progress);
+    some = sampleOf(**runs, *header, wanted);
+  }
   // What the sample shows of the colours decides: a first picture shall not wait for the whole file.
   const auto largest = largestColour(**file, *header, some, Progress());
   if (!largest) return fail(largest.error());

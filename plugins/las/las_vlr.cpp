@@ -9,6 +9,8 @@
 
 #include <fmt/format.h>
 
+#include "las/las_stations.h"
+
 namespace alidade {
 
 namespace {
@@ -137,7 +139,9 @@ Result<void> takeRecord(const ByteSource& file, const std::string& userId, int r
   const bool geoKeys = userId == "LASF_Projection" && recordId == 34735;
   const bool extra = userId == "LASF_Spec" && recordId == 4;
   const bool laz = userId == "laszip encoded" && recordId == 22204;
-  if (!wkt && !geoKeys && !extra && !laz) return {};
+  const bool stations = userId == kStationsUser && recordId == kStationsRecord;
+  const bool copc = userId == "copc" && recordId == 1 && length >= CopcInfo::kSize;
+  if (!wkt && !geoKeys && !extra && !laz && !stations && !copc) return {};
   if (length > kLongestPayload) {
     header.warnings.push_back({fmt::format("Record {} of {} is {} bytes long; it is ignored", recordId, userId, length),
                                fmt::format("offset {}", payloadAt)});
@@ -145,6 +149,14 @@ Result<void> takeRecord(const ByteSource& file, const std::string& userId, int r
   }
   std::vector<std::byte> payload(length);
   if (auto ok = file.readAt(payloadAt, payload); !ok) return fail(ok.error());
+  if (copc) header.copc = CopcInfo::parse(payload.data());
+  if (stations) {
+    auto parsed = parseStations(payload);
+    if (parsed)
+      header.stations = std::move(*parsed);
+    else
+      header.warnings.push_back({"The scanner stations cannot be read: " + parsed.error().what, "record 1 of alidade"});
+  }
   if (laz) {
     auto layout = parseLazRecord(payload, file.path());
     if (!layout) return fail(layout.error());

@@ -4,6 +4,7 @@
 #include <QObject>
 
 #include "las/las_reader.h"
+#include "las/las_writer.h"
 #include "plugin_api/reader_plugin.h"
 
 namespace alidade {
@@ -17,6 +18,12 @@ class LasPlugin : public QObject, public ReaderPlugin {
   std::vector<std::unique_ptr<Reader>> readers() const override {
     std::vector<std::unique_ptr<Reader>> all;
     all.push_back(std::make_unique<LasReader>());
+    return all;
+  }
+  std::vector<std::unique_ptr<ScanWriter>> writers() const override {
+    std::vector<std::unique_ptr<ScanWriter>> all;
+    for (const auto kind : {LasFormatWriter::Kind::Las, LasFormatWriter::Kind::Laz, LasFormatWriter::Kind::Copc})
+      all.push_back(std::make_unique<LasFormatWriter>(kind));
     return all;
   }
 };
