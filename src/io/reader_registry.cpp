@@ -156,6 +156,7 @@ void ReaderRegistry::loadFolder(const std::string& folder) {
       continue;
     }
     for (auto& reader : plugin->readers()) add(std::move(reader));
+    for (auto& writer : plugin->writers()) add(std::move(writer));
   }
 }
 
@@ -164,6 +165,23 @@ void ReaderRegistry::add(std::unique_ptr<Reader> reader) {
   const bool known = std::any_of(m_readers.begin(), m_readers.end(),
                                  [&](const auto& other) { return other->description().id == id; });
   if (!known) m_readers.push_back(std::move(reader));
+}
+
+void ReaderRegistry::add(std::unique_ptr<ScanWriter> writer) {
+  const std::string id = writer->description().id;
+  const bool known = std::any_of(m_writers.begin(), m_writers.end(),
+                                 [&](const auto& other) { return other->description().id == id; });
+  if (!known) m_writers.push_back(std::move(writer));
+}
+
+Result<const ScanWriter*> ReaderRegistry::findWriter(const std::string& path) const {
+  std::string formats;
+  for (const auto& writer : m_writers) {
+    if (writer->writes(path)) return writer.get();
+    formats += (formats.empty() ? "" : ", ") + writer->description().name;
+  }
+  if (formats.empty()) return fail("No plugin that writes scans is installed", path, "Install Alidade whole");
+  return fail("No format that is written goes by this name", path, "Formats written: " + formats);
 }
 
 Result<const Reader*> ReaderRegistry::find(const std::string& path) const {

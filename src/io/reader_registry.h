@@ -8,10 +8,11 @@
 #include <vector>
 
 #include "plugin_api/reader.h"
+#include "plugin_api/scan_writer.h"
 
 namespace alidade {
 
-/// All readers that the plugins bring. Loaded once, then read-only and thread-safe.
+/// All readers and writers that the plugins bring. Loaded once, then read-only and thread-safe.
 class ReaderRegistry {
  public:
   /// The process's registry. The first call loads every plugin from ALIDADE_PLUGIN_PATH, from
@@ -26,7 +27,13 @@ class ReaderRegistry {
   void loadFolder(const std::string& folder);
   void add(std::unique_ptr<Reader> reader);
 
+  void add(std::unique_ptr<ScanWriter> writer);
+
   const std::vector<std::unique_ptr<Reader>>& readers() const { return m_readers; }
+  const std::vector<std::unique_ptr<ScanWriter>>& writers() const { return m_writers; }
+
+  /// The writer of the format that the path's name asks for. The error says what formats are written.
+  Result<const ScanWriter*> findWriter(const std::string& path) const;
 
   /// The reader that claims the file, of any kind. The error says what formats are read.
   Result<const Reader*> find(const std::string& path) const;
@@ -50,6 +57,7 @@ class ReaderRegistry {
   static constexpr ReaderKind kindOf();
 
   std::vector<std::unique_ptr<Reader>> m_readers;
+  std::vector<std::unique_ptr<ScanWriter>> m_writers;
   std::vector<Error> m_loadErrors;
 };
 

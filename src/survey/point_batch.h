@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -50,6 +51,8 @@ struct PointBatch {
 
   /// Points first, first + step, … of this batch, with all their columns.
   PointBatch every(std::size_t first, std::size_t step) const;
+  /// The points of these indices, in their order, with all their columns.
+  PointBatch chosen(std::span<const std::uint32_t> indices) const;
 
   glm::u8vec3 rgb8(std::size_t i) const {
     return rgbWhite > 255 ? glm::u8vec3(rgb[i] >> std::uint16_t{8}) : glm::u8vec3(rgb[i]);

@@ -27,7 +27,30 @@ class FakeReader : public PointListReader {
   int m_score;
 };
 
+class FakeWriter : public ScanWriter {
+ public:
+  explicit FakeWriter(std::string ending) : m_ending(std::move(ending)) {}
+  ReaderDescription description() const override { return {m_ending, m_ending + " scan", {m_ending}}; }
+  bool writes(const std::string& path) const override { return path.ends_with("." + m_ending); }
+  bool isTree() const override { return false; }
+  Result<std::unique_ptr<ScanSink>> create(const std::string& path, const ScanWriteOptions&) const override { return fail("Not now", path); }
+
+ private:
+  std::string m_ending;
+};
+
 }  // namespace
+
+TEST(ReaderRegistry, FindsTheWriterThatAPathAsksForByItsName) {
+  ReaderRegistry registry;
+  EXPECT_THAT(registry.findWriter("a.one").error().what, testing::HasSubstr("No plugin that writes"));
+  registry.add(std::make_unique<FakeWriter>("one"));
+  registry.add(std::make_unique<FakeWriter>("two"));
+  registry.add(std::make_unique<FakeWriter>("two"));
+  EXPECT_EQ(registry.writers().size(), 2u);
+  EXPECT_EQ((*registry.findWriter("a.two"))->description().id, "two");
+  EXPECT_THAT(registry.findWriter("a.three").error().advice, testing::HasSubstr("one scan, two scan"));
+}
 
 TEST(ReaderRegistry, LoadsThePluginsBesideTheProgram) {
   const auto& readers = ReaderRegistry::instance().readers();
