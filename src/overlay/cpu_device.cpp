@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -77,17 +78,21 @@ class CpuOverlayDevice final : public OverlayDevice {
   void projectEdges(const DrawList& list);
   void drawFaces(const DrawList& list);
   void composeTiles(const DrawList& list, Output& output);
+  std::array<std::uint64_t, HiddenSet::kWords> hiddenAround(std::size_t tile) const;
+  bool shines(const ScreenTriangle& triangle, const std::uint32_t (&corner)[3]) const;
   ScreenEdge edgeOf(const DrawList& list, std::size_t edge) const;
 
   PaintFrame m_frame{};
   LensView m_lens{};
   float m_insideSquared = 0;
+  float m_dimmestCosine = 0;  // between normal and half-way vector where the highlight is half a grey level
   std::vector<PaintStyle> m_styles;
   ScreenCorners m_corners{};
   ScreenPoints m_ends{};
   ScreenTriangle* m_triangles = nullptr;
   ScreenEdge* m_edges = nullptr;
   TileBins m_faceBins, m_edgeBins;
+  std::vector<std::uint64_t> m_hiddenSets;  // a tile after the other
   std::vector<Worker> m_workers = std::vector<Worker>(workerCount());
 
   Scratch<float> m_cornerMemory, m_endMemory;
@@ -117,7 +122,6 @@ std::uint32_t litColour(const DrawList& list, const ElementStyle& style, const g
 
 void CpuOverlayDevice::setUp(const DrawList& list, Output& output) {
   const std::size_t pixels = static_cast<std::size_t>(list.width) * list.height;
-  const LensError lens(list.camera, list.display.subdivisionErrorPx);
   const FrameUniform u = frameUniform(list);
   m_lens.lens = Lens<float>(list.camera.lens().d.cast<float>());
   m_lens.fx = u.lens.focal.x;
@@ -125,7 +129,7 @@ void CpuOverlayDevice::setUp(const DrawList& list, Output& output) {
   m_lens.cx = u.lens.focal.z;
   m_lens.cy = u.lens.focal.w;
   m_insideSquared =
-      lens.foldsInPicture() ? u.lens.domain.x * u.lens.domain.x : std::numeric_limits<float>::infinity();
+      list.lensFolds ? u.lens.domain.x * u.lens.domain.x : std::numeric_limits<float>::infinity();
 
   m_styles.clear();
   for (const ElementStyle& style : list.styles)
@@ -152,6 +156,8 @@ void CpuOverlayDevice::setUp(const DrawList& list, Output& output) {
   for (int k = 0; k < 3; ++k) f.light[k] = list.lightDirection[k];
   f.specular = u.shading.y;
   f.shininess = u.shading.z;
+  m_dimmestCosine =
+      f.specular > 0 ? std::min(1.0f, std::pow(0.5f / (255 * f.specular), 1 / f.shininess)) : 1.0f;
   f.drawsFaces = list.display.designFaces && !list.triangles.empty();
   f.drawsEdges = drawsEdges(list);
   f.hasHiddenLayer = drawsHiddenLayer(list);
@@ -169,6 +175,22 @@ void CpuOverlayDevice::setUp(const DrawList& list, Output& output) {
   f.hiddenElement = output.hiddenElement.data();
   f.hiddenDepth = f.hasHiddenLayer ? m_hiddenDepth.reserve(pixels) : nullptr;
   f.colour = reinterpret_cast<std::uint32_t*>(output.colour.data());
+}
+
+/// False only where no place of the triangle comes near enough to the highlight's axis for half a grey level.
+bool CpuOverlayDevice::shines(const ScreenTriangle& t, const std::uint32_t (&corner)[3]) const {
+  const glm::vec3 normal(t.normal[0], t.normal[1], t.normal[2]);
+  const glm::vec3 light(m_frame.light[0], m_frame.light[1], m_frame.light[2]);
+  if (!(m_frame.specular > 0) || glm::dot(normal, light) >= 0) return false;
+  const auto place = [&](int k) { return glm::vec2(m_corners.nx[corner[k]], m_corners.ny[corner[k]]); };
+  const glm::vec2 a = place(0);
+  // The view turns by less than this over the triangle, and the half-way vector by less than 1.5 times as
+  // much while light and view are no more than 139 degrees apart.
+  const float turn = glm::length(place(1) - a) + glm::length(place(2) - a);
+  const glm::vec3 halfway = -light - glm::normalize(glm::vec3(a, 1));
+  const float length2 = glm::dot(halfway, halfway);
+  if (turn > 0.3f || length2 < 0.5f) return true;
+  return glm::dot(normal, halfway) / std::sqrt(length2) > m_dimmestCosine - 1.5f * turn;
 }
 
 void CpuOverlayDevice::projectFaces(const DrawList& list) {
@@ -203,6 +225,7 @@ void CpuOverlayDevice::projectFaces(const DrawList& list) {
       for (int k = 0; k < 3; ++k) t.normal[k] = normal[k];
       t.colour = litColour(list, style, normal);
       t.mark = 1 + v.element % 63;
+      if (shines(t, corner)) t.mark |= kShines;
     }
   };
   m_faceBins.fill(
@@ -213,6 +236,7 @@ void CpuOverlayDevice::projectFaces(const DrawList& list) {
 void CpuOverlayDevice::drawFaces(const DrawList& list) {
   m_faceBins.reset(list.width, list.height);
   if (!list.triangles.empty()) projectFaces(list);
+  m_hiddenSets.resize(m_faceBins.tileCount() * HiddenSet::kWords);
   const TriangleKernel& raster = triangleKernel();
   const PaintKernel& paint = paintKernel();
   parallelFor(m_faceBins.tileCount(), 1, [&](std::size_t index, std::size_t, int which) {
@@ -231,7 +255,7 @@ void CpuOverlayDevice::drawFaces(const DrawList& list) {
     if (bin.count > 0)
       raster.drawSecond(m_triangles, bin.list, bin.count, m_insideSquared,
                         static_cast<float>(LensError::kNearM), second);
-    paint.resolveSecond(m_frame, second);
+    paint.resolveSecond(m_frame, second, m_hiddenSets.data() + index * HiddenSet::kWords);
   });
 }
 
@@ -289,6 +313,20 @@ void CpuOverlayDevice::projectEdges(const DrawList& list) {
       count, prepare, [&](std::size_t i) -> const ScreenEdge& { return m_edges[i]; }, touches);
 }
 
+/// The union of a tile's set with those of its neighbours: a line's own place may lie in them.
+std::array<std::uint64_t, HiddenSet::kWords> CpuOverlayDevice::hiddenAround(std::size_t tile) const {
+  std::array<std::uint64_t, HiddenSet::kWords> shown{};
+  const int columns = m_faceBins.columns(), rows = m_faceBins.rows();
+  const int column = static_cast<int>(tile) % columns, row = static_cast<int>(tile) / columns;
+  for (int y = std::max(0, row - 1); y <= std::min(rows - 1, row + 1); ++y)
+    for (int x = std::max(0, column - 1); x <= std::min(columns - 1, column + 1); ++x) {
+      const std::uint64_t* set =
+          m_hiddenSets.data() + (static_cast<std::size_t>(y) * columns + x) * HiddenSet::kWords;
+      for (int i = 0; i < HiddenSet::kWords; ++i) shown[i] |= set[i];
+    }
+  return shown;
+}
+
 void CpuOverlayDevice::composeTiles(const DrawList& list, Output& output) {
   m_edgeBins.reset(list.width, list.height);
   if (m_frame.drawsEdges) projectEdges(list);
@@ -302,9 +340,13 @@ void CpuOverlayDevice::composeTiles(const DrawList& list, Output& output) {
       tile = {worker.plane(0), worker.plane(1), worker.floats(2)};
       std::fill_n(tile.cover, Worker::kPlane, 0u);
       // The hidden edges first, so that where both cover a pixel the front one gives its name.
-      if (drawsBehind)
-        paint.drawEdges(m_frame, m_edges, bin.list, bin.count, EdgeLayer::Behind, bin.left, bin.top, tile);
-      paint.drawEdges(m_frame, m_edges, bin.list, bin.count, EdgeLayer::Front, bin.left, bin.top, tile);
+      if (drawsBehind) {
+        const auto shown = hiddenAround(index);
+        paint.drawEdges(m_frame, m_edges, bin.list, bin.count, EdgeLayer::Behind, shown.data(), bin.left,
+                        bin.top, tile);
+      }
+      paint.drawEdges(m_frame, m_edges, bin.list, bin.count, EdgeLayer::Front, nullptr, bin.left, bin.top,
+                      tile);
     }
     const std::uint32_t taken = paint.compose(m_frame, bin.left, bin.top, tile, worker.tileTaken.data());
     worker.taken.insert(worker.taken.end(), worker.tileTaken.begin(), worker.tileTaken.begin() + taken);

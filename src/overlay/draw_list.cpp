@@ -182,9 +182,11 @@ DrawList buildDrawList(const FrameDescription& frame, const Camera& scaledCamera
   list.display = frame.display;
   list.lightDirection = lightInCamera(frame);
   list.styles = stylesOf(frame);
+  const LensError lens(scaledCamera, frame.display.subdivisionErrorPx);
+  list.lensRadius = lens.radius();
+  list.lensFolds = lens.foldsInPicture();
   if (!frame.display.designPass || !frame.cameraFromWorld.isFinite()) return list;
 
-  const LensError lens(scaledCamera, frame.display.subdivisionErrorPx);
   std::vector<std::vector<glm::dvec3>> inCamera(frame.designs.size());
   for (std::size_t i = 0; i < frame.designs.size(); ++i)
     if (frame.designs[i].model)

@@ -53,6 +53,8 @@ struct DrawList {
   glm::vec3 lightDirection{0, 0, 1};  ///< camera axes, unit, the way light travels
   DisplaySettings display;
   double worstErrorPx = 0;
+  double lensRadius = 0;   ///< of the lens's domain on the image plane, see LensError
+  bool lensFolds = false;  ///< it ends within the picture's reach, so that pixels must be held to it
 };
 
 /// Culls against the lens's mask, subdivides triangles and edges by need (a bound in pixels per edge,

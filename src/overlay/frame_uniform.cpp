@@ -31,10 +31,9 @@ FrameUniform frameUniform(const DrawList& list) {
   const DisplaySettings& d = list.display;
   const auto scale = static_cast<float>(drawingScale(list.width, list.height));
   const bool hasImage = list.image && !list.image->empty() && d.imagePass;
-  const LensError lens(list.camera, d.subdivisionErrorPx);
   FrameUniform u{};
   u.lens = lensUniform(list.camera);
-  u.lens.domain.x = static_cast<float>(lens.radius());
+  u.lens.domain.x = static_cast<float>(list.lensRadius);
   u.light = glm::vec4(list.lightDirection, d.ambient);
   u.shading = {d.diffuse, d.specular, std::max(d.shininess, 1.0), std::clamp(d.designOpacity, 0.0, 1.0)};
   u.picture = {flag(hasImage), flag(d.grayscaleImage), flag(d.grayscaleDesign),

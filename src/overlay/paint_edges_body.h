@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the Alidade authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Design edges: the twin of resources/shaders/design_edge.frag, several pixels of a row at a time. Blended by
+// Design edges: the twin of resources/shaders/design_edge.frag, several pixels at a time. Blended by
 // maximum, so that the pieces of a bent edge join without a seam.
 
 #pragma once
@@ -81,31 +81,40 @@ ALIDADE_LENS_INLINE Ints smoothState(const PaintFrame& frame, const ScreenEdge& 
   return state;
 }
 
-/// Where the hidden layer shows the edge's own element, and none of its faces before the edge.
-ALIDADE_LENS_INLINE Ints boundsHiddenLayer(const PaintFrame& frame, const ScreenEdge& e, const EdgePixels& p,
-                                           const Ints& key, const Ints& element) {
+/// Where one of the four pixels about the line shows the edge's own element in the hidden layer, and not
+/// before the edge.
+ALIDADE_LENS_INLINE Ints boundsHiddenLayer(const PaintFrame& frame, const ScreenEdge& e,
+                                           const EdgePixels& p) {
   const auto own = static_cast<std::int32_t>(e.element);
-  Ints open = p.active & (stateOfKey(key) == kVisible) & (element != own);
-  if (!any(open)) return open;
   const Ints x = roundedDown(p.lineX), y = roundedDown(p.lineY);
   Floats farthest{};
   for (int i = 0; i < 4; ++i) {
     const Ints index = indexOf(frame, x + (i & 1), y + (i >> 1));
-    const Ints mine = open & (gathered(frame.hiddenElement, index, open) == own);
-    farthest = larger(farthest, gatheredFloats(frame.hiddenDepth, index, mine));
+    const Ints mine = p.active & (gathered(frame.hiddenElement, index, p.active) == own);
+    if (any(mine)) farthest = larger(farthest, gatheredFloats(frame.hiddenDepth, index, mine));
   }
-  return open & (p.depth <= farthest * frame.edgeSlack);
+  return p.active & (p.depth <= farthest * frame.edgeSlack);
 }
 
-/// Of what is not drawn, the depth test spares most of the work: 6 % behind is far behind.
-ALIDADE_LENS_INLINE Ints isNear(const PaintFrame& frame, const ScreenEdge& e, EdgeLayer layer,
-                                const EdgePixels& p, std::size_t at, int some, const Ints& hiddenElement) {
-  if (layer == EdgeLayer::Front) return p.depth < 1.06f * loadSome<Floats>(frame.faceDepth + at, some);
-  const Ints any = hiddenElement != 0;
-  const Ints style = (hiddenElement - 1) * static_cast<int>(sizeof(PaintStyle) / 8);
-  const Floats rank = gatheredFloats<8>(&frame.styles->rank, style, any);
-  const Floats depth = loadSome<Floats>(frame.hiddenDepth + at, some);
-  return ~any | (rank < e.rank) | ((rank == e.rank) & (p.depth < 1.06f * depth));
+/// What a look at the pixels themselves leaves of a run. Of what is not drawn, the depth test spares most of
+/// the work: 6 % behind is far behind.
+ALIDADE_LENS_INLINE Ints isOpen(const PaintFrame& frame, const ScreenEdge& e, EdgeLayer layer,
+                                const Floats& depth, const Ints& active, std::size_t at, int some) {
+  if (layer == EdgeLayer::Front)
+    return active & (depth < 1.06f * loadSome<Floats>(frame.faceDepth + at, some));
+  const auto own = static_cast<std::int32_t>(e.element);
+  const Ints key = loadBytes(frame.key + at, some);
+  const Ints open =
+      active & (key != 0) & ((key & 3) == kVisible) & (loadSome<Ints>(frame.element + at, some) != own);
+  if (!any(open)) return open;
+  const Ints hidden = loadSome<Ints>(frame.hiddenElement + at, some);
+  const Ints isNear = depth < 1.06f * loadSome<Floats>(frame.hiddenDepth + at, some);
+  const Ints others = open & (hidden != 0) & (hidden != own);
+  if (!any(others)) return open & ((hidden == 0) | isNear);
+  const Ints style = (hidden - 1) * static_cast<int>(sizeof(PaintStyle) / 8);
+  const Floats rank = gatheredFloats<8>(&frame.styles->rank, style, others);
+  return open &
+         ((hidden == 0) | (others & (rank < e.rank)) | (((hidden == own) | (rank == e.rank)) & isNear));
 }
 
 /// Line and casing of the pixels in the four bytes of EdgeTile::cover.
@@ -136,53 +145,76 @@ ALIDADE_LENS_INLINE Words coverOf(const PaintFrame& frame, const EdgePixels& p, 
   return asWords((edge > 0.0f) & (isHidden ? bytes << 16 : bytes));
 }
 
-/// A run of pixels of one row.
-ALIDADE_LENS_INLINE void drawRun(const PaintFrame& frame, const ScreenEdge& e, EdgeLayer layer, int x, int y,
-                                 int some, int place, const EdgeTile& tile) {
-  const std::size_t at = static_cast<std::size_t>(y) * frame.width + x;
-  const Floats column = toFloats(kIota + x);
-  const auto row = static_cast<float>(y);
-  const Floats dx = column - e.x;
-  const float dy = row - e.y;
+/// Pixels of an edge that wait until a vector is full: x in the low half, y above it.
+struct EdgeQueue {
+  std::int32_t pixels[2 * kLanes];
+  int count = 0;
+};
+
+/// A vector of pixels anywhere on an edge. No pixel comes twice.
+ALIDADE_LENS_INLINE void drawPixels(const PaintFrame& frame, const ScreenEdge& e, EdgeLayer layer,
+                                    const Ints& pixels, int count, int left, int top, const EdgeTile& tile) {
+  const Ints x = pixels & 0xffff, y = pixels >> 16;
+  const Floats column = toFloats(x), row = toFloats(y);
+  const Floats dx = column - e.x, dy = row - e.y;
   const Floats t = e.ux * dx + e.uy * dy;
   EdgePixels p;
+  p.active = kIota < count;
   p.across = e.ux * dy - e.uy * dx;
-  const Floats w = e.w0 + e.dw * t;
-  p.depth = 1.0f / w;
-  p.active = (kIota < some) & (t >= 0.0f) & (t <= e.length) &
-             (absolute(p.across) < frame.casingHalfWidth + 0.5f) & (w > 0.0f);
-  Ints hiddenElement{};
-  if (layer == EdgeLayer::Behind) hiddenElement = loadSome<Ints>(frame.hiddenElement + at, some);
-  p.active &= isNear(frame, e, layer, p, at, some, hiddenElement);
-  if (!any(p.active)) return;
+  p.depth = 1.0f / (e.w0 + e.dw * t);
   p.lineX = column + p.across * e.uy;
   p.lineY = row - p.across * e.ux;
-  Ints state = all(kHidden);
-  if (layer == EdgeLayer::Behind) {
-    p.active = boundsHiddenLayer(frame, e, p, loadBytes(frame.key + at, some),
-                                 loadSome<Ints>(frame.element + at, some));
-    if (!any(p.active)) return;
-  } else {
-    p.active = isInFront(frame, p);
-    if (!any(p.active)) return;
-    state = smoothState(frame, e, p);
-  }
+  p.active = layer == EdgeLayer::Behind ? boundsHiddenLayer(frame, e, p) : isInFront(frame, p);
+  if (!any(p.active)) return;
+  const Ints state = layer == EdgeLayer::Behind ? all(kHidden) : smoothState(frame, e, p);
   p.along = (e.q0 + e.dq * t) * p.depth;
   const Words cover = coverOf(frame, p, state);
   const Ints written = asInts(cover) != 0;
-  const Bytes old = reinterpret_cast<Bytes>(load<Words>(tile.cover + place)),
-              mine = reinterpret_cast<Bytes>(cover);
-  store(tile.cover + place, larger(old, mine));
-  store(tile.element + place, written ? all(e.element) : load<Words>(tile.element + place));
-  store(tile.depth + place, written ? p.depth : load<Floats>(tile.depth + place));
+  const Ints place = (y - top) * kTileSize + x - left;
+  const Bytes old = reinterpret_cast<Bytes>(gathered(tile.cover, place, written));
+  const Ints most = reinterpret_cast<Ints>(larger(old, reinterpret_cast<Bytes>(cover)));
+  for (unsigned bits = bitsOf(written); bits; bits &= bits - 1) {
+    const int lane = __builtin_ctz(bits);
+    tile.cover[place[lane]] = static_cast<std::uint32_t>(most[lane]);
+    tile.element[place[lane]] = e.element;
+    tile.depth[place[lane]] = p.depth[lane];
+  }
+}
+
+/// Queues what may be drawn of a run of pixels of one row.
+ALIDADE_LENS_INLINE void queueRun(const PaintFrame& frame, const ScreenEdge& e, EdgeLayer layer, int x, int y,
+                                  int some, EdgeQueue& queue) {
+  const Floats dx = toFloats(kIota + x) - e.x;
+  const float dy = static_cast<float>(y) - e.y;
+  const Floats t = e.ux * dx + e.uy * dy;
+  const Floats across = e.ux * dy - e.uy * dx;
+  const Floats w = e.w0 + e.dw * t;
+  const Ints active = (kIota < some) & (t >= 0.0f) & (t <= e.length) &
+                      (absolute(across) < frame.casingHalfWidth + 0.5f) & (w > 0.0f);
+  const std::size_t at = static_cast<std::size_t>(y) * frame.width + x;
+  const Ints open = isOpen(frame, e, layer, 1.0f / w, active, at, some);
+  if (any(open)) queue.count += append(queue.pixels + queue.count, (kIota + x) | y << 16, open);
+}
+
+/// Whether the faces of a run let an edge be seen that comes no nearer than `nearest`.
+ALIDADE_LENS_INLINE bool mayBeSeen(const PaintFrame& frame, int x, int y, int count, float nearest) {
+  const float* depth = frame.faceDepth + static_cast<std::size_t>(y) * frame.width + x;
+  for (; count > 0; count -= kLanes, depth += kLanes)
+    if (any((loadSome<Floats>(depth, count) * 1.06f > nearest) & (kIota < count))) return true;
+  return false;
 }
 
 void drawEdges(const PaintFrame& frame, const ScreenEdge* edges, const std::uint32_t* list,
-               std::uint32_t count, EdgeLayer layer, int left, int top, const EdgeTile& tile) {
+               std::uint32_t count, EdgeLayer layer, const std::uint64_t* shown, int left, int top,
+               const EdgeTile& tile) {
   const float reach = frame.casingHalfWidth + 0.5f;
   for (std::uint32_t i = 0; i < count; ++i) {
     const ScreenEdge& e = edges[list[i]];
     if (i + 4 < count) __builtin_prefetch(edges + list[i + 4]);
+    if (layer == EdgeLayer::Behind) {
+      const unsigned bit = e.element % HiddenSet::kBits;
+      if (!(shown[bit / 64] >> bit % 64 & 1)) continue;
+    }
     const int yFirst = e.top > top ? e.top : top;
     const int yLast = e.bottom < top + kTileSize - 1 ? e.bottom : top + kTileSize - 1;
     const int low = e.left > left ? e.left : left;
@@ -190,6 +222,9 @@ void drawEdges(const PaintFrame& frame, const ScreenEdge* edges, const std::uint
     const float steep = e.uy < 0 ? -e.uy : e.uy;
     const bool isBanded = steep > 1e-4f;
     const float perRow = isBanded ? e.ux / e.uy : 0.0f, band = isBanded ? reach / steep : 0.0f;
+    EdgeQueue queue;
+    const float wEnd = e.w0 + e.dw * e.length;
+    const float nearest = 1.0f / (e.w0 > wEnd ? e.w0 : wEnd);
     for (int y = yFirst; y <= yLast; ++y) {
       int first = low, last = high;
       if (isBanded) {
@@ -199,9 +234,16 @@ void drawEdges(const PaintFrame& frame, const ScreenEdge* edges, const std::uint
         first = from > static_cast<float>(low) ? static_cast<int>(from) : low;
         last = to < static_cast<float>(high) ? static_cast<int>(to) : high;
       }
-      for (int x = first; x <= last; x += kLanes)
-        drawRun(frame, e, layer, x, y, last - x + 1, (y - top) * kTileSize + x - left, tile);
+      if (layer == EdgeLayer::Front && !mayBeSeen(frame, first, y, last - first + 1, nearest)) continue;
+      for (int x = first; x <= last; x += kLanes) {
+        queueRun(frame, e, layer, x, y, last - x + 1, queue);
+        if (queue.count < kLanes) continue;
+        drawPixels(frame, e, layer, load<Ints>(queue.pixels), kLanes, left, top, tile);
+        queue.count -= kLanes;
+        store(queue.pixels, load<Ints>(queue.pixels + kLanes));
+      }
     }
+    if (queue.count > 0) drawPixels(frame, e, layer, load<Ints>(queue.pixels), queue.count, left, top, tile);
   }
 }
 

@@ -55,20 +55,16 @@ ALIDADE_LENS_INLINE Floats highlight(const PaintFrame& frame, const ScreenTriang
 
 /// Adds the highlights, triangle by triangle: mostly one to three share a run of pixels.
 ALIDADE_LENS_INLINE Words litColours(const PaintFrame& frame, const Words& id, const Words& base,
-                                     const Ints& covered, const Floats& column, float row) {
-  if (!(frame.specular > 0)) return base;
+                                     const Ints& shining, const Floats& column, float row) {
   Floats bright{};
-  unsigned left = bitsOf(covered);
+  unsigned left = bitsOf(shining);
+  if (!left) return base;
   while (left) {
     const int lane = __builtin_ctz(left);
     const std::uint32_t triangle = id[lane];
-    const Ints mine = covered & (id == triangle);
+    const Ints mine = shining & (id == triangle);
     left &= ~bitsOf(mine);
-    const ScreenTriangle& t = frame.triangles[triangle];
-    const float facing =
-        t.normal[0] * frame.light[0] + t.normal[1] * frame.light[1] + t.normal[2] * frame.light[2];
-    if (facing >= 0) continue;
-    bright += highlight(frame, t, column, row, mine);
+    bright += highlight(frame, frame.triangles[triangle], column, row, mine);
   }
   if (!any(bright > 0.25f)) return base;
   const Colours c = unpacked(base);
@@ -100,20 +96,21 @@ void resolve(const PaintFrame& frame, const VisibilityTile& tile, std::uint32_t*
       const auto* base = reinterpret_cast<const char*>(frame.triangles);
       const Ints element = gathered<8>(base + offsetof(ScreenTriangle, owner), record, covered);
       const Ints mark = gathered<8>(base + offsetof(ScreenTriangle, mark), record, covered);
+      const Ints shining = (mark & kShines) != 0;
       const Words lit = asWords(gathered<8>(base + offsetof(ScreenTriangle, colour), record, covered));
       const Floats z = covered ? 1.0f / w : infinite;
       const Floats scan = frame.scanDepth ? loadSome<Floats>(frame.scanDepth + at, some) : infinite;
       const Ints state = stateOf(frame, z, scan);
       const Ints isBarely =
           (state == kHidden) & (stateOf(frame, z - 2.0f * frame.tolerance, scan) == kVisible);
-      const Ints key = covered & ((isBarely ? all(kBarelyHidden) : state) | mark << 2);
+      const Ints key = covered & ((isBarely ? all(kBarelyHidden) : state) | (mark & 63) << 2);
       storeSome(frame.faceDepth + at, z, some);
       storeSome(frame.element + at, element, some);
       storeBytes(frame.key + at, key, some);
       storeBytes(frame.state + at, covered ? state : all(kOutside), some);
       if (frame.drawsFaces) {
         const Floats column = toFloats(kIota + x);
-        storeSome(frame.faceColour + at, litColours(frame, id, lit, covered, column, static_cast<float>(y)),
+        storeSome(frame.faceColour + at, litColours(frame, id, lit, shining, column, static_cast<float>(y)),
                   some);
       }
       if (secondKey) {
@@ -124,7 +121,8 @@ void resolve(const PaintFrame& frame, const VisibilityTile& tile, std::uint32_t*
     }
 }
 
-void resolveSecond(const PaintFrame& frame, const SecondLayerTile& tile) {
+void resolveSecond(const PaintFrame& frame, const SecondLayerTile& tile, std::uint64_t* shown) {
+  for (int i = 0; i < HiddenSet::kWords; ++i) shown[i] = 0;
   const int right = tile.left + kTileSize < frame.width ? tile.left + kTileSize : frame.width;
   const int bottom = tile.top + kTileSize < frame.height ? tile.top + kTileSize : frame.height;
   for (int y = tile.top; y < bottom; ++y)
@@ -136,8 +134,15 @@ void resolveSecond(const PaintFrame& frame, const SecondLayerTile& tile) {
       const Ints covered = (key > 0.0f) & (key < __builtin_inff());
       const Ints record = load<Ints>(tile.triangle + place) * static_cast<int>(sizeof(ScreenTriangle) / 8);
       const auto* base = reinterpret_cast<const char*>(frame.triangles);
-      storeSome(frame.hiddenElement + at,
-                gathered<8>(base + offsetof(ScreenTriangle, owner), record, covered), some);
+      const Ints element = gathered<8>(base + offsetof(ScreenTriangle, owner), record, covered);
+      storeSome(frame.hiddenElement + at, element, some);
+      unsigned left = bitsOf(covered & (kIota < some));
+      while (left) {
+        const std::int32_t one = element[__builtin_ctz(left)];
+        left &= ~bitsOf(element == one);
+        const unsigned bit = static_cast<unsigned>(one) % HiddenSet::kBits;
+        shown[bit / 64] |= std::uint64_t{1} << bit % 64;
+      }
       if (!frame.drawsEdges) continue;
       const Floats w = load<Floats>(tile.inverseDepth + place);
       storeSome(frame.hiddenDepth + at, covered ? 1.0f / w : all(__builtin_inff()), some);

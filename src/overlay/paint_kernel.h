@@ -9,6 +9,9 @@
 
 namespace alidade {
 
+/// In ScreenTriangle::mark beside the key's six bits: somewhere on the triangle a highlight can be seen.
+inline constexpr int kShines = 64;
+
 /// Look of an element as the painting kernels read it; colours 0 to 255.
 struct PaintStyle {
   float colour[3];
@@ -53,6 +56,12 @@ struct PaintFrame {
   std::uint32_t* colour;  ///< the picture
 };
 
+/// Which elements the hidden layer of a tile shows: a bit for each remainder. A bit that is not set proves
+/// that the element is not there.
+struct HiddenSet {
+  static constexpr int kBits = 2048, kWords = kBits / 64;
+};
+
 /// An edge on the screen, from its start along (ux, uy).
 struct alignas(64) ScreenEdge {
   float x, y, ux, uy, length;  ///< pixels
@@ -86,9 +95,11 @@ struct PaintKernel {
   void (*resolve)(const PaintFrame& frame, const VisibilityTile& tile, std::uint32_t* secondOwner,
                   float* secondKey);
   /// Elements and depths of its hidden layer.
-  void (*resolveSecond)(const PaintFrame& frame, const SecondLayerTile& tile);
+  void (*resolveSecond)(const PaintFrame& frame, const SecondLayerTile& tile, std::uint64_t* shown);
+  /// `shown`: what the hidden layer shows in this tile and those around it.
   void (*drawEdges)(const PaintFrame& frame, const ScreenEdge* edges, const std::uint32_t* list,
-                    std::uint32_t count, EdgeLayer layer, int left, int top, const EdgeTile& tile);
+                    std::uint32_t count, EdgeLayer layer, const std::uint64_t* shown, int left, int top,
+                    const EdgeTile& tile);
   /// The picture's pixels; returns how many were added to `taken` (room for a tile). `tile` may lack its
   /// arrays.
   std::uint32_t (*compose)(const PaintFrame& frame, int left, int top, const EdgeTile& tile,

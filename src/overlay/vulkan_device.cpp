@@ -11,7 +11,6 @@
 #include "gpu/gpu_device.h"
 #include "overlay/device.h"
 #include "overlay/frame_uniform.h"
-#include "overlay/lens_error.h"
 
 namespace alidade {
 
@@ -320,7 +319,7 @@ void VulkanOverlayDevice::drawFaces(GpuCommands& commands, const DrawList& list,
 
 void VulkanOverlayDevice::recordFaces(GpuCommands& commands, const DrawList& list) {
   constexpr float nothing = std::numeric_limits<float>::infinity();
-  const bool masked = LensError(list.camera, list.display.subdivisionErrorPx).foldsInPicture();
+  const bool masked = list.lensFolds;
   commands.beginPass({{m_faceColour.overwritten(), m_faceElement.overwritten(), m_faceDepth.cleared(nothing),
                        m_faceKey.cleared()},
                       m_depthBuffer.cleared()});

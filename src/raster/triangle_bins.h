@@ -29,6 +29,8 @@ class TileBins {
     m_start.assign(tileCount() + 1, 0);
     m_list.clear();
   }
+  int columns() const { return m_columns; }
+  int rows() const { return m_rows; }
   std::size_t tileCount() const { return static_cast<std::size_t>(m_columns) * m_rows; }
   Tile tile(std::size_t index) const {
     const int column = static_cast<int>(index) % m_columns, row = static_cast<int>(index) / m_columns;

@@ -91,8 +91,9 @@ void projectPoints(const LensView& view, const float* positions, std::size_t str
 /// Calls `put(place, w, inside)` for the lanes of a tile that a triangle may cover; `place` counts pixels of
 /// the tile.
 template <bool masked, class Put>
-ALIDADE_LENS_INLINE void scan(const ScreenTriangle& t, int tileLeft, int tileTop, float insideSquared,
+ALIDADE_LENS_INLINE void scan(const ScreenTriangle& triangle, int tileLeft, int tileTop, float insideSquared,
                               const Put& put) {
+  const ScreenTriangle t = triangle;  // what `put` writes is none of it
   const int xFirst = (t.left > tileLeft ? t.left - tileLeft : 0) & -kLanes;
   const int xLast = t.right - tileLeft < kTileSize - 1 ? t.right - tileLeft : kTileSize - 1;
   const int yFirst = t.top > tileTop ? t.top - tileTop : 0;

@@ -179,5 +179,18 @@ ALIDADE_LENS_INLINE Floats gatheredFloats(const void* base, const Ints& index, c
   return reinterpret_cast<Floats>(gathered<scale>(base, index, mask));
 }
 
+/// Appends the lanes where `mask` holds, in order; returns their number. There must be room for all.
+ALIDADE_LENS_INLINE int append(std::int32_t* to, const Ints& v, const Ints& mask) {
+  const unsigned bits = bitsOf(mask);
+#if defined(__AVX512DQ__) && ALIDADE_LANES == 16
+  _mm512_storeu_si512(
+      to, _mm512_maskz_compress_epi32(static_cast<__mmask16>(bits), reinterpret_cast<__m512i>(v)));
+#else
+  int count = 0;
+  for (unsigned left = bits; left; left &= left - 1) to[count++] = v[__builtin_ctz(left)];
+#endif
+  return __builtin_popcount(bits);
+}
+
 }  // namespace
 }  // namespace alidade
