@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "raster/mesh_kernel.h"
+
 namespace alidade {
 
 namespace {
@@ -40,6 +42,15 @@ const SplatKernel& splatKernel() {
   if (hasAvx2()) return kAvx2SplatKernel;
 #endif
   return kScalarSplatKernel;
+}
+
+const MeshKernel& meshKernel() {
+#if defined(__x86_64__)
+  const SplatKernel* kernel = &splatKernel();
+  if (kernel == &kAvx512SplatKernel) return kAvx512MeshKernel;
+  if (kernel == &kAvx2SplatKernel) return kAvx2MeshKernel;
+#endif
+  return kScalarMeshKernel;
 }
 
 }  // namespace alidade

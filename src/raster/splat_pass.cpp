@@ -149,19 +149,19 @@ bool reachesBeyond(double radius, const Bounds& bounds, const RigidTransform& ca
   return false;
 }
 
-/// Smallest depth that a point of the box can have, metres; 0 where the box reaches the eye's plane.
-double nearestDepth(const Bounds& bounds, const glm::dmat3& rotation, const glm::dvec3& translation) {
-  const glm::dvec3 axis(rotation[0][2], rotation[1][2], rotation[2][2]);
-  const double centre = glm::dot(axis, bounds.centre()) + translation.z;
-  return std::max(0.0, centre - glm::dot(glm::abs(axis), 0.5 * bounds.size()));
-}
-
 }  // namespace
 
 SplatScratch::SplatScratch(std::size_t bytes) : m_data(ScratchPool::instance().take(bytes)), m_bytes(bytes) {}
 
 SplatScratch::~SplatScratch() {
   ScratchPool::instance().giveBack(m_data, m_bytes);
+}
+
+double nearestDepth(const Bounds& bounds, const RigidTransform& cameraFromWorld) {
+  const glm::dmat3 rotation = cameraFromWorld.rotationMatrix();
+  const glm::dvec3 axis(rotation[0][2], rotation[1][2], rotation[2][2]);
+  const double centre = glm::dot(axis, bounds.centre()) + cameraFromWorld.translation.z;
+  return std::max(0.0, centre - glm::dot(glm::abs(axis), 0.5 * bounds.size()));
 }
 
 SplatView baseView(const Camera& camera, const SplatOptions& options) {
@@ -210,7 +210,7 @@ SplatRun makeRun(const PointStore& store, const SelectedRange& range, const Rigi
   const double focal = std::sqrt(std::abs(static_cast<double>(base.fx) * base.fy));
   const double sizeTimesDepth = options.fixedSize ? 0.0 : options.pointSize * range.spacing * focal;
   run.view.sizeTimesDepth = static_cast<float>(sizeTimesDepth);
-  const double nearest = nearestDepth(node.bounds, rotation, cameraFromWorld.translation);
+  const double nearest = nearestDepth(node.bounds, cameraFromWorld);
   run.view.onePixel = base.largest <= 1.0f || (base.smallest <= 1.0f && sizeTimesDepth <= nearest);
   return run;
 }

@@ -53,6 +53,9 @@ struct SplatPlanes {
   }
 };
 
+/// Smallest depth that a point of the box can have, metres; 0 where the box reaches the eye's plane.
+double nearestDepth(const Bounds& bounds, const RigidTransform& cameraFromWorld);
+
 /// The camera's and the footprint's part of the view; runs of one node add m, t and the size. Refers to
 /// the camera, which must outlive the drawing.
 SplatView baseView(const Camera& camera, const SplatOptions& options);

@@ -35,23 +35,28 @@ class StreetScene {
     return nearest;
   }
 
-  /// What a scanner there measures: rays evenly spread in angle with a jitter, `noiseMeters` along the ray.
-  void scan(const glm::dvec3& eye, std::size_t rays, double noiseMeters, std::uint32_t seed,
-            PointBatch& into) const {
+  /// What a scanner there measures: rays evenly spread in angle, each off by up to `jitter` / 2 of a step,
+  /// `noiseMeters` along the ray. With its grid: row from the lowest elevation, column from azimuth 0.
+  void scan(const glm::dvec3& eye, std::size_t rays, double noiseMeters, std::uint32_t seed, PointBatch& into,
+            double jitter = 1.0, std::uint16_t station = 0) const {
     std::mt19937 random(seed);
-    std::uniform_real_distribution<double> jitter(-0.5, 0.5);
+    std::uniform_real_distribution<double> off(-0.5 * jitter, 0.5 * jitter);
     std::normal_distribution<double> noise(0.0, noiseMeters);
     const double lowest = -1.2, highest = 1.0;
     const auto rows = static_cast<int>(std::sqrt(rays * (highest - lowest) / (2 * M_PI)));
     const auto columns = static_cast<int>(rays / rows);
     for (int c = 0; c < columns; ++c) {
       for (int r = 0; r < rows; ++r) {
-        const double azimuth = 2 * M_PI * (c + jitter(random)) / columns;
-        const double elevation = lowest + (highest - lowest) * (r + 0.5 + jitter(random)) / rows;
+        const double azimuth = 2 * M_PI * (c + off(random)) / columns;
+        const double elevation = lowest + (highest - lowest) * (r + 0.5 + off(random)) / rows;
         const glm::dvec3 ray(std::cos(azimuth) * std::cos(elevation), std::sin(azimuth) * std::cos(elevation),
                              std::sin(elevation));
         const double range = cast(eye, ray);
-        if (range < 80) into.position.push_back(eye + (range + noise(random)) * ray);
+        if (range >= 80) continue;
+        into.position.push_back(eye + (range + noise(random)) * ray);
+        into.row.push_back(static_cast<std::uint32_t>(r));
+        into.column.push_back(static_cast<std::uint32_t>(c));
+        into.scanner.push_back(station);
       }
     }
   }
