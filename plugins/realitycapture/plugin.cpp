@@ -1,0 +1,22 @@
+// SPDX-FileCopyrightText: 2026 the Alidade authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include <QObject>
+
+#include "realitycapture/xmp_reader.h"
+#include "plugin_api/reader_plugin.h"
+
+class RealityCapturePlugin : public QObject, public alidade::ReaderPlugin {
+  Q_OBJECT
+  Q_PLUGIN_METADATA(IID ALIDADE_READER_PLUGIN_IID)
+  Q_INTERFACES(alidade::ReaderPlugin)
+
+ public:
+  std::vector<std::unique_ptr<alidade::Reader>> readers() const override {
+    std::vector<std::unique_ptr<alidade::Reader>> all;
+    all.push_back(std::make_unique<alidade::XmpReader>());
+    return all;
+  }
+};
+
+#include "plugin.moc"
