@@ -3,20 +3,15 @@
 
 #include "trajectory/tum_trajectory_reader.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 
-#include <fmt/format.h>
-
-#include "plugin_api/import_slip.h"
 #include "plugin_api/text_file.h"
+#include "trajectory/timed_pose.h"
 
 namespace alidade {
 
 namespace {
-
-constexpr double kFarthestM = 1e9;
 
 using TumLine = std::array<double, 8>;  // time, tx ty tz, qx qy qz qw
 
@@ -36,8 +31,7 @@ double quaternionLength(const TumLine& n) { return std::hypot(std::hypot(n[4], n
 }  // namespace
 
 Result<CameraSet> parseTumTrajectory(std::string_view text, const std::string& path, const Progress& progress) {
-  CameraSet set;
-  ImportSlip unsorted, unnormalised, twice;
+  TrajectoryBuilder trajectory;
   LineReader lines(text);
   for (std::string_view line; lines.next(line);) {
     const std::string_view words = trimmed(line);
@@ -51,34 +45,10 @@ Result<CameraSet> parseTumTrajectory(std::string_view text, const std::string& p
     if (!n)
       return fail("The line is not eight numbers: time, position and quaternion are expected", place,
                   "Export the trajectory as `timestamp tx ty tz qx qy qz qw`");
-    if (!std::all_of(n->begin(), n->end(), [](double v) { return std::isfinite(v); }))
-      return fail("The pose is not finite", place, "Remove the line or export the trajectory again");
-    if (std::any_of(n->begin() + 1, n->begin() + 4, [](double v) { return std::abs(v) > kFarthestM; }))
-      return fail("The position is farther than 1e9 m", place, "Export the trajectory again in metres");
-    const double length = quaternionLength(*n);
-    if (!(length > 1e-6) || !std::isfinite(length))
-      return fail("The rotation is zero or no quaternion", place, "Remove the line or export the trajectory again");
-    if (std::abs(length - 1) > 1e-3) unnormalised.note(place);
-
-    const RigidTransform worldFromCamera{
-        glm::dquat((*n)[7] / length, (*n)[4] / length, (*n)[5] / length, (*n)[6] / length), {(*n)[1], (*n)[2], (*n)[3]}};
-    PosedPicture pose;
-    pose.timeSecs = (*n)[0];
-    pose.hasTime = true;
-    pose.cameraFromWorld = worldFromCamera.inverse();
-    if (!set.pictures.empty() && pose.timeSecs < set.pictures.back().timeSecs) unsorted.note(place);
-    if (!set.pictures.empty() && pose.timeSecs == set.pictures.back().timeSecs) twice.note(place);
-    set.pictures.push_back(std::move(pose));
+    const auto& v = *n;
+    if (auto added = trajectory.add(v[0], {v[1], v[2], v[3]}, {v[4], v[5], v[6], v[7]}, place); !added) return fail(added.error());
   }
-  if (set.pictures.empty()) return fail("The file holds no pose", path, "Export the trajectory again");
-  unsorted.tell(set.warnings, "times are out of order; the poses were sorted by time");
-  twice.tell(set.warnings, "times come twice in a row");
-  unnormalised.tell(set.warnings, "quaternions are not of unit length; they were normalised");
-  std::stable_sort(set.pictures.begin(), set.pictures.end(),
-                   [](const PosedPicture& a, const PosedPicture& b) { return a.timeSecs < b.timeSecs; });
-  set.details = fmt::format("TUM trajectory: {} poses from {:.3f} s to {:.3f} s", set.pictures.size(),
-                            set.pictures.front().timeSecs, set.pictures.back().timeSecs);
-  return set;
+  return trajectory.take("TUM trajectory", path);
 }
 
 ReaderDescription TumTrajectoryReader::description() const { return {"tum-trajectory", "TUM trajectory", {"txt", "tum"}}; }
