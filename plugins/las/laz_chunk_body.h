@@ -192,7 +192,7 @@ class PointwiseDecoder : public ChunkDecoder {
 template <class Coder>
 class LayeredItems {
  public:
-  explicit LayeredItems(const std::vector<Item>& items) {
+  explicit LayeredItems(const std::vector<Item>& items) : m_point(items.front().version) {
     if (const Item* rgb = itemOf(items, {Item::Rgb14, Item::RgbNir14}))
       m_colour.emplace(rgb->version, rgb->type == Item::RgbNir14);
     if (const Item* wave = itemOf(items, {Item::WavePacket14})) m_wave.emplace(wave->version);

@@ -43,10 +43,13 @@ class Channels {
   std::array<bool, 4> m_used{};
 };
 
-/// LAS 1.4 core record, 30 bytes: POINT14 version 3.
+/// LAS 1.4 core record, 30 bytes: POINT14 version 3 or 4.
 class Point14 {
  public:
   static constexpr std::size_t kSize = 30;
+
+  explicit Point14(int version) : m_tellsAlways(version > 3) {}
+
   enum LayerIndex { kReturnsXy, kZ, kClass, kFlags, kIntensity, kAngle, kUser, kSource, kTime, kLayers };
 
   /// Scanner channel of the first point; the other items start with it.
@@ -56,7 +59,8 @@ class Point14 {
     return m_channel;
   }
 
-  /// Codes one record through kLayers layers; returns its scanner channel.
+  /// Codes one record through kLayers layers. Returns the scanner channel that the other items are told: in version 3
+  /// the record's own where it has just changed, else 0 (a slip of the first implementation that became the format).
   template <class Coder>
   unsigned code(Layer<Coder>* layers, std::byte* at) {
     Changes changes = codeChanges(layers[kReturnsXy].coder, at);
@@ -75,7 +79,7 @@ class Point14 {
     }
     c.timeChanged = changes.time;
     if constexpr (!Coder::kEncodes) std::memcpy(at, c.last, kSize);
-    return m_channel;
+    return changes.channel || m_tellsAlways ? m_channel : 0;
   }
 
  private:
@@ -126,7 +130,7 @@ class Point14 {
 
   /// What changed, and where the new point stands among its pulse's returns.
   struct Changes {
-    bool source = false, time = false, angle = false;
+    bool channel = false, source = false, time = false, angle = false;
     unsigned count = 0, number = 0;
     unsigned standing() const { return (number == 1 ? 2 : 0) + (number >= count ? 1 : 0); }  // first, last
   };
@@ -159,6 +163,7 @@ class Point14 {
       c->last[15] = static_cast<std::byte>((byteAt(c->last + 15) & ~0x30u) | channel << 4);
     }
     Changes changes;
+    changes.channel = changed & 64;
     changes.source = changed & 32;
     changes.time = changed & 16;
     changes.angle = changed & 8;
@@ -270,13 +275,14 @@ class Point14 {
     return kMap[count][number];
   }
 
+  bool m_tellsAlways;
   unsigned m_channel = 0;
   Channels<Context> m_channels;
 };
 
 /// How the items behind POINT14 follow the scanner channel. On a change to a channel that was seen
-/// before, version 3 goes on from the last values of the channel left, for this one point (a slip of its
-/// first implementation that became the format); version 4 from the channel's own.
+/// before, version 3 goes on from the last values of the channel left, for this one point (another slip that
+/// became the format); version 4 from the channel's own.
 template <class Context>
 class ChannelFollower {
  public:
