@@ -8,51 +8,22 @@
 
 #include <benchmark/benchmark.h>
 
+#include "bench/site.h"
 #include "cloud/point_store.h"
 #include "cloud/selection.h"
+#include "raster/eye_dome.h"
+#include "raster/occluder_mesh.h"
 #include "raster/occlusion.h"
 #include "raster/splatter.h"
+#include "unit/raster/occlusion_score.h"
 
 namespace alidade {
 namespace {
 
-/// Terrain with hills and blocks of houses at survey coordinates, 200 m × 200 m, evenly dotted.
-std::shared_ptr<const PointStore> siteOf(std::size_t count) {
-  static std::map<std::size_t, std::shared_ptr<const PointStore>> made;
-  auto& store = made[count];
-  if (store) return store;
-  PointStoreBuilder builder;
-  std::uint64_t state = 42;
-  const auto unit = [&state] {
-    state = state * 6364136223846793005ull + 1442695040888963407ull;
-    return static_cast<double>(state >> 11) * 0x1p-53;
-  };
-  PointBatch batch;
-  for (std::size_t i = 0; i < count; ++i) {
-    const double x = 200 * unit(), y = 200 * unit();
-    double z = 2 * std::sin(0.05 * x) + std::cos(0.08 * y) + 0.003 * unit();
-    const bool house = std::fmod(x, 25) > 12 && std::fmod(y, 25) > 12;
-    if (house) z += i % 4 == 0 ? 8.0 : 8.0 * unit();
-    batch.position.push_back({402000.0 + x, 5655000.0 + y, 112.0 + z});
-    const auto shade = static_cast<unsigned char>(40 + 200 * unit());
-    batch.rgb.push_back({shade, static_cast<unsigned char>(house ? 90 : shade), 80});
-    if (batch.size() == 1'000'000) builder.add(batch), batch.clear();
-  }
-  builder.add(batch);
-  store = *builder.build(Progress());
-  return store;
-}
-
-/// 1080p with full five-coefficient distortion.
-Camera hdCamera() {
-  return Camera(*Intrinsics::fromParameters(
-      CameraModel::OpenCv5, 1920, 1080, {1150, 1150, 959.5, 539.5, -0.12, 0.03, 0.0005, -0.0004, -0.002}));
-}
-
-/// The whole site in view from above its edge.
-RigidTransform overview() {
-  return RigidTransform::cameraLookingAt({402100, 5654870, 190}, {402100, 5655085, 110});
-}
+using test::cpuSeconds;
+using test::hdCamera;
+using test::overview;
+using test::siteOf;
 
 /// On the street between the houses.
 RigidTransform street() {
@@ -63,9 +34,11 @@ void splatSite(benchmark::State& state, const SplatOptions& options) {
   const auto store = siteOf(20'000'000);
   const Camera camera = hdCamera();
   const std::vector<SplatLayer> layers{{store, selectAll(*store, camera, overview())}};
+  const double start = cpuSeconds();
   for (auto _ : state) {
     benchmark::DoNotOptimize(splat(layers, camera, overview(), options).drawn);
   }
+  state.counters["cpu_ms"] = 1e3 * (cpuSeconds() - start) / static_cast<double>(state.iterations());
   state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * layers[0].selection.pointCount));
   state.SetLabel(splatKernelName());
 }
@@ -113,6 +86,94 @@ void occlusion_5M(benchmark::State& state) {
   state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * layers[0].selection.pointCount));
 }
 
+/// The street of the tests, scanned from two stations whose returns lie in grids, with the truth of one
+/// 1080p frame: rows that draw it also say how right they are, beyond 2 px of depth edges.
+struct ScannedStreet {
+  std::vector<Station> stations{2};
+  PointBatch batch;
+  std::shared_ptr<const PointStore> store;
+  Camera camera = test::streetCamera(1920, 1080);
+  DepthImage truth;
+};
+
+const ScannedStreet& streetOf(std::size_t points) {
+  static std::map<std::size_t, ScannedStreet> made;
+  auto [found, isNew] = made.try_emplace(points);
+  ScannedStreet& street = found->second;
+  if (!isNew) return street;
+  const test::StreetScene scene;
+  const glm::dvec3 places[] = {{0.5, -1.0, 1.8}, {18, 2.5, 1.8}};
+  for (std::uint16_t s = 0; s < 2; ++s) {
+    street.stations[s].worldFromScanner.translation = places[s];
+    scene.scan(places[s], points / 2, 0.003, s + 1u, street.batch, 0.1, s);
+  }
+  PointStoreBuilder builder;
+  builder.add(street.batch);
+  street.store = *builder.build(Progress());
+  street.truth = test::truthOf(scene, street.camera, test::kStreetView);
+  return street;
+}
+
+void report(benchmark::State& state, const ScannedStreet& street, const DepthImage& depth, double cpuStart) {
+  const test::Score score = test::scoreOf(street.truth, depth, true);
+  state.counters["precision"] = score.precision;
+  state.counters["recall"] = score.recall;
+  state.counters["cpu_ms"] = 1e3 * (cpuSeconds() - cpuStart) / static_cast<double>(state.iterations());
+}
+
+void occlusionStructured(benchmark::State& state, std::size_t points) {
+  const ScannedStreet& street = streetOf(points);
+  OccluderMeshBuilder builder(street.stations);
+  builder.add(street.batch);
+  const auto mesh = std::make_shared<OccluderMesh>(builder.build());
+  OcclusionDepth occlusion;
+  const double start = cpuSeconds();
+  for (auto _ : state) occlusion = occlusionDepth(Occluders{{}, {mesh}}, street.camera, test::kStreetView);
+  report(state, street, occlusion.depth, start);
+  state.counters["quads"] = static_cast<double>(mesh->mergedQuads + mesh->cellQuads + mesh->borderSquares);
+}
+
+void occlusion_structured_5M(benchmark::State& state) {
+  occlusionStructured(state, 5'000'000);
+}
+
+void occluder_mesh_build_5M(benchmark::State& state) {
+  const ScannedStreet& street = streetOf(5'000'000);
+  for (auto _ : state) {
+    OccluderMeshBuilder builder(street.stations);
+    builder.add(street.batch);
+    benchmark::DoNotOptimize(builder.build().packs.size());
+  }
+}
+
+/// The same returns without their grid.
+void occlusion_street(benchmark::State& state) {
+  const ScannedStreet& street = streetOf(static_cast<std::size_t>(state.range(0)) * 100'000);
+  const std::vector<SplatLayer> layers{{street.store, selectAll(*street.store, street.camera, test::kStreetView)}};
+  OcclusionDepth occlusion;
+  const double start = cpuSeconds();
+  for (auto _ : state) occlusion = occlusionDepth(layers, street.camera, test::kStreetView);
+  report(state, street, occlusion.depth, start);
+  state.counters["drawn"] = static_cast<double>(occlusion.pointsDrawn);
+}
+
+void occlusion_squares_5M(benchmark::State& state) {
+  const ScannedStreet& street = streetOf(5'000'000);
+  const std::vector<SplatLayer> layers{{street.store, selectAll(*street.store, street.camera, test::kStreetView)}};
+  OcclusionDepth occlusion;
+  const double start = cpuSeconds();
+  for (auto _ : state) occlusion = squareOcclusionDepth(layers, street.camera, test::kStreetView);
+  report(state, street, occlusion.depth, start);
+}
+
+void eye_dome_1080p(benchmark::State& state) {
+  const ScannedStreet& street = streetOf(100'000);
+  ColourImage colour(1920, 1080, Rgba8{200, 180, 160, 255});
+  const double start = cpuSeconds();
+  for (auto _ : state) applyEyeDome(street.truth, {}, colour);
+  state.counters["cpu_ms"] = 1e3 * (cpuSeconds() - start) / static_cast<double>(state.iterations());
+}
+
 void build_store_5M(benchmark::State& state) {
   const auto source = siteOf(5'000'000);
   PointBatch batch;
@@ -133,6 +194,11 @@ BENCHMARK(splat_colour_footprints_20M)->Unit(benchmark::kMillisecond)->UseRealTi
 BENCHMARK(select_pixels_20M)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(select_and_splat_20M)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(occlusion_5M)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(occlusion_structured_5M)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(occluder_mesh_build_5M)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(occlusion_street)->Unit(benchmark::kMillisecond)->UseRealTime()->Arg(1)->Arg(4)->Arg(15)->Arg(50)->Arg(200);
+BENCHMARK(occlusion_squares_5M)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(eye_dome_1080p)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(build_store_5M)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 }  // namespace
