@@ -159,15 +159,24 @@ Result<void> LasReader::sample(const std::string& path, std::uint64_t wanted, co
     if (!*runs) return ScanReader::sample(path, wanted, sink, progress);
     some = sampleOf(**runs, *header, wanted);
   }
-  // What the sample shows of the colours decides: a first picture shall not wait for the whole file.
-  const auto largest = largestColour(**file, *header, some, Progress());
-  if (!largest) return fail(largest.error());
-  const bool unshifted = *largest > 0 && *largest <= 255;
+  // What the sample shows of the colours decides, so that it is read once: it is held until all of it is there.
+  std::vector<std::shared_ptr<MadeBatch>> held;
   const MakeBatch make = [&](const std::byte* records, std::size_t count) -> std::function<bool()> {
-    auto made = std::make_shared<MadeBatch>(*header, records, count, unshifted);
-    return [made = std::move(made), &sink] { return sink(made->batch); };
+    auto made = std::make_shared<MadeBatch>(*header, records, count, false);
+    return [made = std::move(made), &held] {
+      held.push_back(made);
+      return true;
+    };
   };
-  return readRuns(**file, *header, some, make, progress, readingWords(path));
+  if (auto ok = readRuns(**file, *header, some, make, progress, readingWords(path)); !ok) return ok;
+  std::uint16_t largest = 0;
+  for (const auto& made : held)
+    for (const glm::u16vec3& rgb : made->batch.rgb) largest = std::max({largest, rgb.r, rgb.g, rgb.b});
+  for (const auto& made : held) {
+    made->batch.rgbWhite = largest > 0 && largest <= 255 ? 255 : 65535;
+    if (!sink(made->batch)) break;
+  }
+  return {};
 }
 
 }  // namespace alidade
