@@ -23,7 +23,7 @@ constexpr std::size_t kRows = 16;
 /// log2 of a positive normal float within 1e-6 of its value near 1 and 2e-7 absolute elsewhere: exponent, then
 /// the series of the inverse hyperbolic tangent about the middle of [0.7, 1.4]. No branch, so that loops over it
 /// turn into vector code.
-inline float logarithm2(float value) {
+[[gnu::always_inline]] inline float logarithm2(float value) {
   const auto bits = std::bit_cast<std::int32_t>(value);
   const std::int32_t exponent = (bits - 0x3f3504f3) >> 23;
   const float m = std::bit_cast<float>(bits - (exponent << 23));
@@ -35,11 +35,49 @@ inline float logarithm2(float value) {
 }
 
 /// exp(-x) for x >= 0: a Taylor series of degree 5 of x / 32, squared five times; within 2e-5.
-inline float negativeExponential(float x) {
+[[gnu::always_inline]] inline float negativeExponential(float x) {
   const float s = std::min(x, 32.0f) * (-1.0f / 32.0f);
   float e = 1 + s * (1 + s * (0.5f + s * (1.0f / 6 + s * (1.0f / 24 + s * (1.0f / 120)))));
   for (int i = 0; i < 5; ++i) e *= e;
   return e;
+}
+
+#if defined(__x86_64__)
+#define ALIDADE_CLONES [[gnu::target_clones("avx512f", "avx2", "default")]]
+#else
+#define ALIDADE_CLONES
+#endif
+
+ALIDADE_CLONES void logarithmRow(const float* z, int width, float* logs) {
+  constexpr float kInf = std::numeric_limits<float>::infinity();
+  for (int x = 0; x < width; ++x) {
+    const bool isKnown = z[x] > 0.0f && z[x] < std::numeric_limits<float>::max();
+    const float value = logarithm2(isKnown ? z[x] : 1.0f);
+    logs[x] = isKnown ? value : kInf;
+  }
+}
+
+/// Rows of logarithms about the one that is shaded.
+struct Ring {
+  const float *here, *up, *down, *upper, *lower;
+  int radius, diagonal;
+};
+
+ALIDADE_CLONES void shadeRow(const Ring& ring, float scale, int width, float* shade) {
+  const float *here = ring.here, *up = ring.up, *down = ring.down;
+  const float *left = here - ring.radius, *right = here + ring.radius;
+  const float *upperLeft = ring.upper - ring.diagonal, *upperRight = ring.upper + ring.diagonal;
+  const float *lowerLeft = ring.lower - ring.diagonal, *lowerRight = ring.lower + ring.diagonal;
+  for (int x = 0; x < width; ++x) {
+    const float own = here[x];
+    float sum = 0;
+    for (const float* other : {left, right, up, down, upperLeft, upperRight, lowerLeft, lowerRight}) {
+      const float step = own - other[x];
+      sum += step > 0.0f ? step : 0.0f;
+    }
+    const float dark = negativeExponential(scale * sum);
+    shade[x] = own < std::numeric_limits<float>::infinity() ? dark : 1.0f;
+  }
 }
 
 /// log2 z in a border of `radius` empty pixels; +inf where nothing is, which shades nobody.
@@ -48,13 +86,7 @@ Image<float> logarithms(const DepthImage& depth, int radius) {
                     std::numeric_limits<float>::infinity());
   parallelFor(static_cast<std::size_t>(depth.height()), kRows, [&](std::size_t first, std::size_t last, int) {
     for (auto y = static_cast<int>(first); y < static_cast<int>(last); ++y) {
-      const float* z = depth.row(y);
-      float* row = logs.row(y + radius) + radius;
-      for (int x = 0; x < depth.width(); ++x) {
-        const bool isKnown = z[x] > 0.0f && z[x] < std::numeric_limits<float>::max();
-        const float value = logarithm2(isKnown ? z[x] : 1.0f);
-        row[x] = isKnown ? value : std::numeric_limits<float>::infinity();
-      }
+      logarithmRow(depth.row(y), depth.width(), logs.row(y + radius) + radius);
     }
   });
   return logs;
@@ -70,20 +102,9 @@ void shadeRows(const DepthImage& depth, const EyeDomeOptions& options, const Use
   parallelFor(static_cast<std::size_t>(depth.height()), kRows, [&](std::size_t first, std::size_t last, int) {
     std::vector<float> shade(static_cast<std::size_t>(width));
     for (auto y = static_cast<int>(first); y < static_cast<int>(last); ++y) {
-      const float* here = logs.row(y + radius) + radius;
-      const float* up = logs.row(y) + radius;
-      const float* down = logs.row(y + 2 * radius) + radius;
-      const float* upper = logs.row(y + radius - diagonal) + radius;
-      const float* lower = logs.row(y + radius + diagonal) + radius;
-      for (int x = 0; x < width; ++x) {
-        const float own = here[x];
-        const auto over = [own](float other) { return std::max(0.0f, own - other); };
-        const float sum = over(here[x - radius]) + over(here[x + radius]) + over(up[x]) + over(down[x]) +
-                          over(upper[x - diagonal]) + over(upper[x + diagonal]) + over(lower[x - diagonal]) +
-                          over(lower[x + diagonal]);
-        const float dark = negativeExponential(scale * sum);
-        shade[x] = own < std::numeric_limits<float>::infinity() ? dark : 1.0f;
-      }
+      const auto at = [&](int down) { return logs.row(y + radius + down) + radius; };
+      const Ring ring{at(0), at(-radius), at(radius), at(-diagonal), at(diagonal), radius, diagonal};
+      shadeRow(ring, scale, width, shade.data());
       use(y, shade.data());
     }
   });
