@@ -5,174 +5,168 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
-#include <new>
 
-#include "base/parallel.h"
-#include "cloud/octree.h"
-#include "cloud/source_columns.h"
-#include "cloud/spacing.h"
+#include "cloud/node_spacing.h"
 
 namespace alidade {
 
 namespace {
 
-/// Sebastiano Vigna's SplitMix64 (public domain algorithm): a counter-based draw, so that a point's
-/// level depends on the seed and its place in the source alone, not on threads or batches.
-double uniformOf(std::uint32_t seed, std::uint64_t index) {
-  std::uint64_t z = (static_cast<std::uint64_t>(seed) << 32) + (index + 1) * 0x9e3779b97f4a7c15ull;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
-  z ^= z >> 31;
-  return static_cast<double>(z >> 11) * 0x1p-53;
-}
-
-/// The level as stored: below L+1 even once rounded to float.
-float storedLevel(const LevelLaw& law, double u) {
-  const auto top = std::nextafter(static_cast<float>(law.deepest + 1), 0.0f);
-  return std::min(static_cast<float>(law.levelOfUniform(u)), top);
-}
-
-class MemoryPointStore : public PointStore {
- public:
-  std::uint64_t pointCount() const override { return m_points.size(); }
-  const Bounds& bounds() const override { return m_source.bounds(); }
-  const LevelLaw& levelLaw() const override { return m_law; }
-  std::span<const CloudNode> nodes() const override { return m_nodes; }
-  std::span<const DisplayPoint> points() const override { return m_points; }
-  std::span<const float> levels() const override { return m_levels; }
-  double medianSpacing() const override { return m_medianSpacing; }
-  glm::dvec3 sourcePosition(std::uint64_t point) const override {
-    return m_source.position(m_sourceIndex[point]);
-  }
-  std::uint64_t sourceIndex(std::uint64_t point) const override { return m_sourceIndex[point]; }
-  std::optional<glm::u8vec3> sourceColour(std::uint64_t point) const override {
-    return m_source.colour(m_sourceIndex[point]);
-  }
-
-  SourceColumns m_source;
-  LevelLaw m_law;
-  std::vector<CloudNode> m_nodes;
-  std::vector<DisplayPoint> m_points;
-  std::vector<float> m_levels;
-  std::vector<std::uint32_t> m_sourceIndex;
-  double m_medianSpacing = 0;
-};
-
-DisplayPoint displayPoint(const CloudNode& node, const glm::dvec3& position, std::uint16_t colour) {
-  const glm::dvec3 steps = glm::clamp(glm::round((position - node.origin) / node.step), 0.0, 65535.0);
-  return {static_cast<std::uint16_t>(steps.x), static_cast<std::uint16_t>(steps.y),
-          static_cast<std::uint16_t>(steps.z), colour};
-}
-
-std::vector<OctreeItem> itemsOf(const SourceColumns& source, const OctreeFrame& frame, const LevelLaw& law,
-                                std::uint32_t seed) {
-  std::vector<OctreeItem> items(source.size() - source.droppedCount());
-  if (source.droppedCount() > 0) {
-    std::size_t next = 0;
-    for (std::uint64_t i = 0; i < source.size(); ++i) {
-      if (SourceColumns::isUsable(source.position(i))) items[next++].index = static_cast<std::uint32_t>(i);
-    }
-  }
-  const bool gaps = source.droppedCount() > 0;
-  parallelFor(items.size(), 1 << 16, [&](std::size_t first, std::size_t last, int) {
-    for (std::size_t i = first; i < last; ++i) {
-      const std::uint64_t index = gaps ? items[i].index : i;
-      items[i] = {frame.keyOf(source.position(index)), storedLevel(law, uniformOf(seed, index)),
-                  static_cast<std::uint32_t>(index)};
-    }
-  });
-  return items;
-}
-
-/// Display points, levels and source indices in the order of `items`; the nodes' own bounds.
-void fillColumns(MemoryPointStore& store, const std::vector<OctreeItem>& items) {
-  store.m_points.resize(items.size());
-  store.m_levels.resize(items.size());
-  store.m_sourceIndex.resize(items.size());
-  parallelFor(store.m_nodes.size(), 1, [&](std::size_t first, std::size_t last, int) {
-    for (std::size_t n = first; n < last; ++n) {
-      CloudNode& node = store.m_nodes[n];
-      for (std::uint64_t i = node.first; i < node.first + node.count; ++i) {
-        const glm::dvec3& position = store.m_source.position(items[i].index);
-        node.bounds.add(position);
-        store.m_points[i] = displayPoint(node, position, store.m_source.displayColour(items[i].index));
-        store.m_levels[i] = items[i].level;
-        store.m_sourceIndex[i] = items[i].index;
-      }
-    }
-  });
-  for (std::size_t n = store.m_nodes.size(); n-- > 0;) {
-    CloudNode& node = store.m_nodes[n];
-    for (std::uint32_t c = 0; c < node.childCount; ++c) {
-      node.bounds.add(store.m_nodes[static_cast<std::size_t>(node.firstChild) + c].bounds);
-    }
-  }
+/// In [0,1), from the node alone: which nodes round up first, so that many small prefixes do not jump together.
+double ditherOf(std::uint32_t node) {
+  return static_cast<double>((node + 1) * 0x9e3779b9u) * 0x1p-32;
 }
 
 }  // namespace
 
-struct PointStoreBuilder::Impl {
-  Options options;
-  SourceColumns source;
+double AttributeColumn::at(std::uint64_t point, int component) const {
+  const std::size_t each = numberSize(type);
+  return numberAt(data.data() + (point * static_cast<std::uint64_t>(components) + static_cast<std::uint64_t>(component)) * each, type);
+}
 
-  Result<std::shared_ptr<const PointStore>> build(const Progress& progress) {
-    const std::uint64_t count = source.size() - source.droppedCount();
-    if (source.size() >= std::numeric_limits<std::uint32_t>::max()) {
-      return fail("The cloud has more points than a store in memory can hold",
-                  std::to_string(count) + " points", "Open it in parts of fewer than 4 billion points");
+PointStore::PointStore(PointStoreData data) : m_data(std::move(data)) {
+  if (!m_data.nodes.empty()) m_bounds = m_data.nodes[0].bounds;
+  for (std::size_t c = 0; c < m_data.schema.columns.size(); ++c) {
+    const ColumnShape& shape = m_data.schema.columns[c];
+    m_attributes.push_back({shape.name, shape.type, shape.components, m_data.columns[c], shape.extra});
+  }
+  std::int32_t low = std::numeric_limits<std::int32_t>::max(), high = std::numeric_limits<std::int32_t>::min();
+  std::vector<std::pair<double, std::uint64_t>> spacings;
+  std::uint64_t measured = 0;
+  for (std::uint32_t n = 0; n < m_data.nodes.size(); ++n) {
+    const CloudNode& node = m_data.nodes[n];
+    if (node.count == 0) continue;
+    m_byFirst.push_back(n);
+    low = std::min(low, m_data.places[n].firstStep);
+    high = std::max(high, m_data.places[n].firstStep + static_cast<std::int32_t>(m_data.places[n].stepCount));
+    if (node.spacing > 0) spacings.push_back({node.spacing, node.count}), measured += node.count;
+  }
+  std::sort(m_byFirst.begin(), m_byFirst.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return m_data.nodes[a].first < m_data.nodes[b].first; });
+  std::sort(spacings.begin(), spacings.end());
+  std::uint64_t below = 0;
+  for (const auto& [spacing, count] : spacings) {
+    below += count;
+    if (2 * below < measured) continue;
+    m_medianSpacing = spacing;
+    break;
+  }
+  // A lone point tells no spacing: its surroundings' is the best guess.
+  for (CloudNode& node : m_data.nodes)
+    if (node.spacing <= 0) node.spacing = m_medianSpacing;
+  m_below.assign(m_data.nodes.size(), {std::numeric_limits<std::int32_t>::max(), std::numeric_limits<std::int32_t>::min()});
+  for (std::size_t n = m_data.nodes.size(); n-- > 0;) {
+    const CloudNode& node = m_data.nodes[n];
+    const PointStoreData::NodePlace& place = m_data.places[n];
+    if (node.count > 0) m_below[n] = {place.firstStep, place.firstStep + static_cast<std::int32_t>(place.stepCount)};
+    for (std::uint32_t c = 0; c < node.childCount; ++c) {
+      const StepRange& child = m_below[static_cast<std::size_t>(node.firstChild) + c];
+      m_below[n] = {std::min(m_below[n].low, child.low), std::max(m_below[n].high, child.high)};
     }
-    auto store = std::make_shared<MemoryPointStore>();
-    store->m_law = LevelLaw::forPointCount(count, options.dimensions);
-    store->m_source = std::move(source);
-    source = SourceColumns();
-    if (count == 0) return std::shared_ptr<const PointStore>(std::move(store));
-
-    progress.report(0.0, "Drawing levels");
-    const OctreeFrame frame = OctreeFrame::around(store->m_source.bounds());
-    std::vector<OctreeItem> items = itemsOf(store->m_source, frame, store->m_law, options.seed);
-    if (progress.cancelled()) return fail(cancelledError());
-
-    OctreeOptions octreeOptions;
-    octreeOptions.leafPoints = std::max(1u, options.leafPoints);
-    octreeOptions.deepestLevel = store->m_law.deepest;
-    Octree tree = buildOctree(items, frame, octreeOptions, progress.part(0.2, 0.7));
-    if (progress.cancelled()) return fail(cancelledError());
-
-    progress.report(0.7, "Packing points");
-    store->m_nodes = std::move(tree.nodes);
-    fillColumns(*store, items);
-    items = {};
-    if (progress.cancelled()) return fail(cancelledError());
-
-    progress.report(0.9, "Measuring point spacing");
-    store->m_medianSpacing = measureSpacing(store->m_nodes, tree.levels, store->m_points, store->m_law);
-    progress.report(1.0, "Points ready");
-    return std::shared_ptr<const PointStore>(std::move(store));
   }
-};
-
-PointStoreBuilder::PointStoreBuilder() : PointStoreBuilder(Options{}) {}
-PointStoreBuilder::PointStoreBuilder(const Options& options) : m_impl(std::make_unique<Impl>()) {
-  m_impl->options = options;
-}
-PointStoreBuilder::~PointStoreBuilder() = default;
-
-void PointStoreBuilder::add(const PointBatch& batch) {
-  m_impl->source.add(batch);
-}
-
-std::uint64_t PointStoreBuilder::droppedCount() const {
-  return m_impl->source.droppedCount();
-}
-
-Result<std::shared_ptr<const PointStore>> PointStoreBuilder::build(const Progress& progress) {
-  try {
-    return m_impl->build(progress);
-  } catch (const std::bad_alloc&) {
-    return fail("There is not enough memory for the cloud's points", {},
-                "Close other data or open a thinned version of the cloud");
+  if (m_byFirst.empty()) return;
+  m_lowestStep = low;
+  m_cumulative.assign(static_cast<std::size_t>(high - low), 0);
+  for (const std::uint32_t n : m_byFirst) {
+    std::uint32_t before = 0;
+    std::size_t at = static_cast<std::size_t>(m_data.places[n].firstStep - low);
+    for (const std::uint32_t up : levelsOf(n).cumulative) m_cumulative[at++] += up - before, before = up;
   }
+  for (std::size_t i = 1; i < m_cumulative.size(); ++i) m_cumulative[i] += m_cumulative[i - 1];
+}
+
+double PointStore::spacingOfLevel(double level) const {
+  return kPoissonSide * m_data.lattice.step * std::exp2(kFinestPass - level);
+}
+
+double PointStore::levelOfSpacing(double meters) const {
+  return kFinestPass - std::log2(meters / (kPoissonSide * m_data.lattice.step));
+}
+
+NodeLevels PointStore::levelsOf(std::uint32_t node) const {
+  const PointStoreData::NodePlace& place = m_data.places[node];
+  return {place.firstStep, m_data.tables.subspan(place.tableOffset, place.stepCount)};
+}
+
+std::uint32_t PointStore::countBelow(std::uint32_t node, double level) const {
+  const NodeLevels levels = levelsOf(node);
+  const double at = level * kLevelSteps - levels.firstStep;
+  if (!(at > 0)) return 0;
+  if (at >= static_cast<double>(levels.cumulative.size())) return m_data.nodes[node].count;
+  const auto step = static_cast<std::size_t>(at);
+  const std::uint32_t before = step > 0 ? levels.cumulative[step - 1] : 0, in = levels.cumulative[step] - before;
+  const double part = (at - static_cast<double>(step)) * in + ditherOf(node);
+  return before + std::min(in, static_cast<std::uint32_t>(part));
+}
+
+double PointStore::highestLevel() const {
+  return (m_lowestStep + static_cast<double>(m_cumulative.size())) / kLevelSteps;
+}
+
+double PointStore::levelOfShare(double share) const {
+  if (m_cumulative.empty() || !(share > 0)) return lowestLevel();
+  const double wanted = std::min(share, 1.0) * static_cast<double>(m_cumulative.back());
+  const auto found = std::lower_bound(m_cumulative.begin(), m_cumulative.end(), wanted,
+                                      [](std::uint64_t count, double limit) { return static_cast<double>(count) < limit; });
+  if (found == m_cumulative.end()) return highestLevel();
+  const double before = found == m_cumulative.begin() ? 0.0 : static_cast<double>(*std::prev(found));
+  const double in = static_cast<double>(*found) - before;
+  const double part = in > 0 ? (wanted - before) / in : 1.0;
+  return (m_lowestStep + static_cast<double>(found - m_cumulative.begin()) + part) / kLevelSteps;
+}
+
+std::uint32_t PointStore::nodeOf(std::uint64_t point) const {
+  const auto after = std::upper_bound(m_byFirst.begin(), m_byFirst.end(), point,
+                                      [&](std::uint64_t p, std::uint32_t n) { return p < m_data.nodes[n].first; });
+  return *std::prev(after);
+}
+
+glm::dvec3 PointStore::sourcePosition(std::uint64_t point) const {
+  if (const std::size_t bytes = m_data.lattice.exactBytes(); bytes > 0)
+    return m_data.lattice.unpackExact(m_data.exact.data() + point * bytes);
+  const DisplayPoint& p = m_data.points[point];
+  return m_data.lattice.positionOf(m_data.places[nodeOf(point)].corner + glm::i64vec3(p.x, p.y, p.z));
+}
+
+const AttributeColumn* PointStore::attribute(std::string_view name) const {
+  const auto found = std::find_if(m_attributes.begin(), m_attributes.end(),
+                                  [&](const AttributeColumn& c) { return !c.extra && c.name == name; });
+  return found == m_attributes.end() ? nullptr : &*found;
+}
+
+std::optional<glm::u8vec3> PointStore::sourceColour(std::uint64_t point) const {
+  const AttributeColumn* rgb = attribute("rgb");
+  if (rgb == nullptr) return std::nullopt;
+  std::uint16_t c[3];
+  std::memcpy(c, rgb->data.data() + point * sizeof c, sizeof c);
+  const int shift = rgbWhite() > 255 ? 8 : 0;
+  return glm::u8vec3(c[0] >> shift, c[1] >> shift, c[2] >> shift);
+}
+
+PointBatch PointStore::batch(std::uint64_t first, std::uint64_t count) const {
+  PointBatch batch;
+  first = std::min(first, pointCount());
+  count = std::min(count, pointCount() - first);
+  batch.position.resize(count);
+  const std::size_t bytes = m_data.lattice.exactBytes();
+  for (std::uint64_t i = 0; i < count;) {
+    if (bytes > 0) {
+      batch.position[i] = m_data.lattice.unpackExact(m_data.exact.data() + (first + i) * bytes);
+      ++i;
+      continue;
+    }
+    const std::uint32_t n = nodeOf(first + i);
+    const std::uint64_t end = std::min(first + count, m_data.nodes[n].first + m_data.nodes[n].count);
+    for (; first + i < end; ++i) {
+      const DisplayPoint& p = m_data.points[first + i];
+      batch.position[i] = m_data.lattice.positionOf(m_data.places[n].corner + glm::i64vec3(p.x, p.y, p.z));
+    }
+  }
+  for (std::size_t c = 0; c < m_data.columns.size(); ++c)
+    m_data.schema.unpack(c, m_data.columns[c].data() + first * m_data.schema.columns[c].bytes(), count, batch);
+  return batch;
 }
 
 }  // namespace alidade

@@ -4,6 +4,8 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <vector>
 
 #include "camera/camera.h"
@@ -29,26 +31,37 @@ struct Selection {
   std::uint64_t pointCount = 0;
 };
 
+/// Where a node's level is cut.
+enum class LevelThreshold {
+  ByDistance,  ///< each node by its own distance from the eye
+  Uniform,     ///< all nodes at the level that the nearest one wants (Zhang 2020, uniform threshold)
+};
+
 struct SelectionOptions {
   double density = 1.0;  ///< the slider, 0..1
   DensityLaw law = DensityLaw::PointsPerPixel;
+  LevelThreshold threshold = LevelThreshold::ByDistance;
   double pointsPerSquareMetre = 150000.0;
   double targetSpacingPx = 0.75;  ///< wanted distance between neighbours on screen at density 1
-  std::uint64_t pointBudget = 0;  ///< 0: none
+  std::uint64_t pointBudget = 0;  ///< over all stores; 0: none
 };
 
 /// Which prefixes to draw for a camera: nodes inside the field of view of the real (distorted) lens,
 /// each cut where its level reaches the wanted density. A point drawn at one density is drawn at
 /// every higher one, and the count changes continuously.
 ///
-/// With s the surface spacing at a node and d the distance from the eye to its nearest point, the
-/// share of the levels that gives the wanted density is
+/// At density 1 a node is drawn down to the level l1 whose spacing is, at the distance d from the eye to the
+/// node's nearest point,
 ///
-///     points per pixel          F = (s f / (d targetSpacingPx))²
-///     points per square metre   F = s² D / ln(d + 1)                  (Zhang 2020)
+///     points per pixel          w = targetSpacingPx d / f
+///     points per square metre   w = sqrt(ln(d + 1) / D)                  (Zhang 2020)
 ///
-/// and the node is drawn up to the level that holds density · min(1, F) of the points. The count is
-/// therefore proportional to the slider. A budget lowers the slider for all nodes alike.
+/// For blue noise l1 follows from w alone; for random levels it is the level below which the share
+/// (spacing / w)² of the node's surroundings lies. The slider and the budget lower all of a view's levels by
+/// the same delta octaves, over all stores: the spacing on screen grows evenly, and delta is chosen so that
+/// the count is the slider's share of the count at density 1.
+std::vector<Selection> select(std::span<const std::shared_ptr<const PointStore>> stores, const Camera& camera,
+                              const RigidTransform& cameraFromWorld, const SelectionOptions& options);
 Selection select(const PointStore& store, const Camera& camera, const RigidTransform& cameraFromWorld,
                  const SelectionOptions& options);
 

@@ -119,7 +119,7 @@ Result<std::vector<ElementDeviation>> deviations(const PointStore& cloud, const 
 
   const std::uint64_t total = cloud.pointCount();
   const double share = std::min(1.0, static_cast<double>(options.maximumPoints) / static_cast<double>(std::max<std::uint64_t>(total, 1)));
-  const auto levelLimit = static_cast<float>(share < 1 ? cloud.levelLaw().levelOfShare(share) : 1e9);
+  const double levelLimit = cloud.levelOfShare(share);
   std::vector<std::vector<float>> byElement(design.elements.size());
   std::mutex mutex;
   parallelFor(cloud.nodes().size(), 1, [&](std::size_t first, std::size_t last, int) {
@@ -127,8 +127,8 @@ Result<std::vector<ElementDeviation>> deviations(const PointStore& cloud, const 
     std::vector<std::pair<std::uint32_t, float>> found;
     for (std::size_t n = first; n < last; ++n) {
       const CloudNode& node = cloud.nodes()[n];
-      for (std::uint64_t i = node.first; i < node.first + node.count; ++i) {
-        if (cloud.levels()[i] > levelLimit) break;
+      const std::uint32_t used = cloud.countBelow(static_cast<std::uint32_t>(n), levelLimit);
+      for (std::uint64_t i = node.first; i < node.first + used; ++i) {
         const glm::vec3 p(cloud.sourcePosition(i) - design.origin);
         RTCPointQuery query{p.x, p.y, p.z, 0.0f, static_cast<float>(options.searchM)};
         RTCPointQueryContext context;

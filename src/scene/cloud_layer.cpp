@@ -21,15 +21,6 @@ glm::u8vec3 colourOf(std::uint16_t rgb565) {
           static_cast<std::uint8_t>((b * 527 + 23) >> 6)};
 }
 
-/// How many points of the node lie below the level under which `share` of the cloud lies.
-std::size_t prefixOf(const PointStore& store, const CloudNode& node, double share) {
-  if (share >= 1.0) return node.count;
-  if (share <= 0.0) return 0;
-  const auto levels = store.levels().subspan(node.first, node.count);
-  const auto level = static_cast<float>(store.levelLaw().levelOfShare(share));
-  return static_cast<std::size_t>(std::lower_bound(levels.begin(), levels.end(), level) - levels.begin());
-}
-
 }  // namespace
 
 CloudLayer::CloudLayer(vtkRenderer* renderer) : m_coarse(makeActor({1, 1, 1}, false)), m_fine(makeActor({1, 1, 1}, false)) {
@@ -40,8 +31,10 @@ CloudLayer::CloudLayer(vtkRenderer* renderer) : m_coarse(makeActor({1, 1, 1}, fa
 void CloudLayer::addPoints(double fromShare, double toShare) {
   for (std::size_t cloud = 0; cloud < m_clouds.size(); ++cloud) {
     const PointStore& store = *m_clouds[cloud];
-    for (const CloudNode& node : store.nodes()) {
-      const std::size_t from = prefixOf(store, node, fromShare), to = prefixOf(store, node, toShare);
+    const double fromLevel = store.levelOfShare(fromShare), toLevel = store.levelOfShare(toShare);
+    for (std::uint32_t n = 0; n < store.nodes().size(); ++n) {
+      const CloudNode& node = store.nodes()[n];
+      const std::uint32_t from = fromShare > 0 ? store.countBelow(n, fromLevel) : 0, to = store.countBelow(n, toLevel);
       if (to <= from) continue;
       m_ranges.push_back({m_points.size(), cloud, node.first + from});
       const glm::dvec3 corner = node.origin - m_origin;

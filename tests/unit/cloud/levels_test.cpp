@@ -59,6 +59,7 @@ std::shared_ptr<const PointStore> storeOf(std::size_t count, std::uint32_t seed,
   for (std::size_t i = 0; i < count; ++i)
     batch.position.push_back({place(random), place(random), place(random)});
   PointStoreBuilder::Options options;
+  options.levels = LevelKind::Random;
   options.seed = seed;
   options.dimensions = dimensions;
   PointStoreBuilder builder(options);
@@ -66,30 +67,40 @@ std::shared_ptr<const PointStore> storeOf(std::size_t count, std::uint32_t seed,
   return *builder.build(Progress());
 }
 
+/// Points below each 64th of a level, over the whole store.
+std::vector<std::uint64_t> countsByStep(const PointStore& store) {
+  std::vector<std::uint64_t> counts;
+  for (int step = 0; step <= 64 * (store.levelLaw().deepest + 1); ++step) {
+    std::uint64_t below = 0;
+    for (std::uint32_t n = 0; n < store.nodes().size(); ++n)
+      below += store.countBelow(n, step / 64.0 - store.lawShift());
+    counts.push_back(below);
+  }
+  return counts;
+}
+
 TEST(Levels, TheDrawnLevelsFollowTheLaw) {
   // Kolmogorov-Smirnov: sqrt(n) D exceeds 1.95 once in a thousand; the seeds are fixed.
   for (const int dimensions : {2, 3, 4}) {
     for (const std::uint32_t seed : {1u, 2u, 3u}) {
       const auto store = storeOf(200'000, seed, dimensions);
-      std::vector<float> levels(store->levels().begin(), store->levels().end());
-      std::sort(levels.begin(), levels.end());
+      const std::vector<std::uint64_t> counts = countsByStep(*store);
+      const auto n = static_cast<double>(store->pointCount());
       double largest = 0;
-      const auto n = static_cast<double>(levels.size());
-      for (std::size_t i = 0; i < levels.size(); ++i) {
-        const double expected = store->levelLaw().shareBelow(levels[i]);
-        largest = std::max({largest, std::abs(expected - i / n), std::abs(expected - (i + 1) / n)});
-      }
+      for (std::size_t step = 0; step < counts.size(); ++step)
+        largest = std::max(largest, std::abs(store->levelLaw().shareBelow(static_cast<double>(step) / 64.0) -
+                                             static_cast<double>(counts[step]) / n));
       EXPECT_LT(std::sqrt(n) * largest, 1.95) << dimensions << " " << seed;
-      EXPECT_GE(levels.front(), 0.0f);
-      EXPECT_LT(levels.back(), store->levelLaw().deepest + 1);
+      EXPECT_EQ(counts.front(), 0u);
+      EXPECT_EQ(counts.back(), store->pointCount());
     }
   }
 }
 
 TEST(Levels, ASeedRepeatsTheDrawAndAnotherChangesIt) {
   const auto a = storeOf(5000, 1, 3), b = storeOf(5000, 1, 3), c = storeOf(5000, 2, 3);
-  EXPECT_TRUE(std::equal(a->levels().begin(), a->levels().end(), b->levels().begin()));
-  EXPECT_FALSE(std::equal(a->levels().begin(), a->levels().end(), c->levels().begin()));
+  EXPECT_EQ(countsByStep(*a), countsByStep(*b));
+  EXPECT_NE(countsByStep(*a), countsByStep(*c));
 }
 
 }  // namespace

@@ -4,10 +4,11 @@
 #include "cloud/point_store.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <set>
+#include <cstring>
 
 #include <gtest/gtest.h>
 
@@ -19,23 +20,24 @@ namespace {
 using test::storeFrom;
 using test::unevenRoom;
 
+/// A point's coordinates and colour as bits, to compare as multisets.
+std::vector<std::array<std::uint64_t, 4>> bitsOf(const PointBatch& batch) {
+  std::vector<std::array<std::uint64_t, 4>> bits;
+  for (std::size_t i = 0; i < batch.size(); ++i) {
+    std::uint64_t colour = 0;
+    if (!batch.rgb.empty()) colour = batch.rgb[i].r | std::uint64_t{batch.rgb[i].g} << 16 | std::uint64_t{batch.rgb[i].b} << 32;
+    bits.push_back({std::bit_cast<std::uint64_t>(batch.position[i].x), std::bit_cast<std::uint64_t>(batch.position[i].y),
+                    std::bit_cast<std::uint64_t>(batch.position[i].z), colour});
+  }
+  std::sort(bits.begin(), bits.end());
+  return bits;
+}
+
 void expectEverySourcePoint(const PointStore& store, const PointBatch& batch) {
   ASSERT_EQ(store.pointCount(), batch.size());
-  std::vector<char> seen(batch.size(), 0);
-  for (std::uint64_t i = 0; i < store.pointCount(); ++i) {
-    const std::uint64_t source = store.sourceIndex(i);
-    ASSERT_LT(source, batch.size());
-    ASSERT_FALSE(seen[source]) << "twice " << source;
-    seen[source] = 1;
-    const glm::dvec3 p = store.sourcePosition(i);
-    for (int axis = 0; axis < 3; ++axis) {
-      ASSERT_EQ(std::bit_cast<std::uint64_t>(p[axis]),
-                std::bit_cast<std::uint64_t>(batch.position[source][axis]));
-    }
-    if (!batch.rgb.empty()) {
-      ASSERT_EQ(store.sourceColour(i), batch.rgb8(source));
-    }
-  }
+  const PointBatch back = store.batch(0, store.pointCount());
+  EXPECT_TRUE(bitsOf(back) == bitsOf(batch));
+  for (std::uint64_t i = 0; i < store.pointCount(); i += 97) ASSERT_EQ(store.sourcePosition(i), back.position[i]);
 }
 
 /// Every rule of CloudNode's comment.
@@ -43,9 +45,8 @@ void expectSoundTree(const PointStore& store) {
   const auto nodes = store.nodes();
   std::vector<int> parents(nodes.size(), 0);
   std::vector<std::pair<std::uint64_t, std::uint64_t>> runs;
-  for (std::size_t n = 0; n < nodes.size(); ++n) {
+  for (std::uint32_t n = 0; n < nodes.size(); ++n) {
     const CloudNode& node = nodes[n];
-    EXPECT_DOUBLE_EQ(node.size, 65536 * node.step);
     EXPECT_DOUBLE_EQ(node.size, std::ldexp(nodes[0].size, -static_cast<int>(node.depth)));
     if (node.count > 0) runs.push_back({node.first, node.count});
     for (std::uint32_t c = 0; c < node.childCount; ++c) {
@@ -57,17 +58,17 @@ void expectSoundTree(const PointStore& store) {
       EXPECT_TRUE(glm::all(glm::lessThanEqual(node.bounds.min, nodes[child].bounds.min)));
       EXPECT_TRUE(glm::all(glm::greaterThanEqual(node.bounds.max, nodes[child].bounds.max)));
     }
+    const NodeLevels levels = store.levelsOf(n);
+    ASSERT_TRUE(std::is_sorted(levels.cumulative.begin(), levels.cumulative.end()));
+    if (node.count > 0) {
+      ASSERT_EQ(levels.cumulative.back(), node.count);
+    }
     for (std::uint64_t i = node.first; i < node.first + node.count; ++i) {
       const DisplayPoint& p = store.points()[i];
       const glm::dvec3 shown = node.origin + glm::dvec3(p.x, p.y, p.z) * node.step;
       const glm::dvec3 away = glm::abs(shown - store.sourcePosition(i));
       ASSERT_LE(std::max({away.x, away.y, away.z}), 0.5001 * node.step);
       ASSERT_TRUE(node.bounds.contains(store.sourcePosition(i)));
-      ASSERT_TRUE(i == node.first || store.levels()[i] >= store.levels()[i - 1]);
-      ASSERT_TRUE(node.childCount == 0 || store.levels()[i] < node.depth + 1.0f);
-    }
-    if (node.count > 16) {
-      EXPECT_LE(node.step, 1e-3);
     }
   }
   EXPECT_EQ(parents[0], 0);
@@ -105,7 +106,8 @@ TEST(PointStore, CountsOverAllBatchesAndKeepsTheirOrder) {
   const auto store = *builder.build(Progress());
   expectEverySourcePoint(*store, whole);
   const auto atOnce = storeFrom(whole);
-  EXPECT_TRUE(std::equal(store->levels().begin(), store->levels().end(), atOnce->levels().begin()));
+  EXPECT_TRUE(std::equal(store->points().begin(), store->points().end(), atOnce->points().begin(),
+                         [](const DisplayPoint& a, const DisplayPoint& b) { return std::memcmp(&a, &b, sizeof a) == 0; }));
 }
 
 TEST(PointStore, LeavesNonFinitePointsOutAndCountsThem) {
@@ -118,13 +120,12 @@ TEST(PointStore, LeavesNonFinitePointsOutAndCountsThem) {
   EXPECT_EQ(builder.droppedCount(), 3u);
   const auto store = *builder.build(Progress());
   ASSERT_EQ(store->pointCount(), 997u);
-  std::set<std::uint64_t> sources;
-  for (std::uint64_t i = 0; i < 997; ++i) {
-    sources.insert(store->sourceIndex(i));
-    EXPECT_EQ(store->sourcePosition(i), batch.position[store->sourceIndex(i)]);
+  PointBatch good = batch.every(0, 1);
+  for (const std::size_t i : {999, 500, 3}) {
+    good.position.erase(good.position.begin() + static_cast<std::ptrdiff_t>(i));
+    good.rgb.erase(good.rgb.begin() + static_cast<std::ptrdiff_t>(i));
   }
-  EXPECT_EQ(sources.size(), 997u);
-  EXPECT_FALSE(sources.contains(3));
+  expectEverySourcePoint(*store, good);
   EXPECT_LT(store->bounds().diagonal(), 100.0);
 }
 
@@ -161,6 +162,8 @@ TEST(PointStore, SparseCloudsOverGreatDistancesStaySmall) {
   expectEverySourcePoint(*store, batch);
   expectSoundTree(*store);
   EXPECT_LT(store->nodes().size(), batch.size());
+  // Places are kept to a small part of the distance between points.
+  for (const CloudNode& node : store->nodes()) EXPECT_LT(node.step, 1000.0);
 }
 
 TEST(PointStore, MeasuresTheSpacingOfARegularGrid) {
@@ -184,7 +187,7 @@ TEST(PointStore, IntensityTintsWhatHasNoColour) {
   const auto store = storeFrom(batch);
   for (int i = 0; i < 2; ++i) {
     EXPECT_FALSE(store->sourceColour(i).has_value());
-    EXPECT_EQ(store->points()[i].rgb565, store->sourceIndex(i) == 0 ? 0x0000 : 0xffff);
+    EXPECT_EQ(store->points()[i].rgb565, store->sourcePosition(i).x == 0 ? 0x0000 : 0xffff);
   }
 }
 
@@ -198,17 +201,23 @@ TEST(PointStore, CancelsWithTheCommonError) {
   EXPECT_TRUE(isCancelled(store.error()));
 }
 
-TEST(PointStore, APrefixIsAnEvenlyThinnedNode) {
-  // The share of a dense and a sparse half below a level is the law's in both.
-  const PointBatch batch = unevenRoom(300'000);
-  const auto store = storeFrom(batch);
+TEST(PointStore, RandomLevelsThinDenseAndSparsePartsAlike) {
+  PointStoreBuilder::Options options;
+  options.levels = LevelKind::Random;
+  PointStoreBuilder builder(options);
+  builder.add(unevenRoom(300'000));
+  const auto store = *builder.build(Progress());
   const double share = 0.2;
-  const double level = store->levelLaw().levelOfShare(share);
+  const double level = store->levelOfShare(share);
   std::uint64_t near = 0, nearBelow = 0, far = 0, farBelow = 0;
-  for (std::uint64_t i = 0; i < store->pointCount(); ++i) {
-    const bool isNear = glm::length(store->sourcePosition(i)) < 3.0, below = store->levels()[i] < level;
-    (isNear ? near : far) += 1;
-    (isNear ? nearBelow : farBelow) += below;
+  for (std::uint32_t n = 0; n < store->nodes().size(); ++n) {
+    const CloudNode& node = store->nodes()[n];
+    const std::uint64_t end = node.first + store->countBelow(n, level);
+    for (std::uint64_t i = node.first; i < node.first + node.count; ++i) {
+      const bool isNear = glm::length(store->sourcePosition(i)) < 3.0;
+      (isNear ? near : far) += 1;
+      (isNear ? nearBelow : farBelow) += i < end;
+    }
   }
   EXPECT_NEAR(nearBelow / double(near), share, 0.01);
   EXPECT_NEAR(farBelow / double(far), share, 0.01);

@@ -1,0 +1,108 @@
+// SPDX-FileCopyrightText: 2026 the Alidade authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "cloud/chunk_plan.h"
+
+#include <algorithm>
+
+#include "cloud/morton.h"
+
+namespace alidade {
+
+namespace {
+
+constexpr int kDeepestCell = 7;
+
+struct Place {
+  std::uint64_t tile;
+  std::uint64_t inTile;
+};
+
+/// Tiles are counted in 20 bits and a sign (lattice.h).
+std::uint64_t tileCode(const glm::ivec3& tile) {
+  constexpr std::int32_t kMiddle = 1 << 20;
+  return mortonOf(static_cast<std::uint32_t>(tile.x + kMiddle), static_cast<std::uint32_t>(tile.y + kMiddle),
+                  static_cast<std::uint32_t>(tile.z + kMiddle));
+}
+
+glm::ivec3 tileOfCode(std::uint64_t code) {
+  constexpr std::int32_t kMiddle = 1 << 20;
+  return {static_cast<std::int32_t>(gatherBits(code)) - kMiddle, static_cast<std::int32_t>(gatherBits(code >> 1)) - kMiddle,
+          static_cast<std::int32_t>(gatherBits(code >> 2)) - kMiddle};
+}
+
+std::uint64_t cellCode(const PlanCell& c) {
+  return mortonOf(c.cell.x, c.cell.y, c.cell.z) << 3 * (16 - c.depth);
+}
+
+}  // namespace
+
+bool mortonLess(const PlanCell& a, const PlanCell& b) {
+  const std::uint64_t tileA = tileCode(a.tile), tileB = tileCode(b.tile);
+  return tileA != tileB ? tileA < tileB : cellCode(a) < cellCode(b);
+}
+
+ChunkPlan::ChunkPlan(std::span<const glm::i64vec3> sample, std::uint64_t pointCount, std::uint64_t cellPoints) {
+  std::vector<Place> places;
+  places.reserve(sample.size());
+  for (const glm::i64vec3& unit : sample) {
+    const glm::ivec3 tile(unit >> std::int64_t{16});
+    const glm::i64vec3 in = unit & std::int64_t{0xffff};
+    places.push_back({tileCode(tile), mortonOf(static_cast<std::uint64_t>(in.x), static_cast<std::uint64_t>(in.y),
+                                               static_cast<std::uint64_t>(in.z))});
+  }
+  std::sort(places.begin(), places.end(),
+            [](const Place& a, const Place& b) { return a.tile != b.tile ? a.tile < b.tile : a.inTile < b.inTile; });
+  const double each = sample.empty() ? 1.0 : static_cast<double>(std::max<std::uint64_t>(pointCount, sample.size())) / static_cast<double>(sample.size());
+
+  std::vector<double> expected;  // points a cell
+  const auto cut = [&](const auto& self, const glm::ivec3& tile, std::uint64_t code, int depth, std::size_t first, std::size_t last) -> void {
+    const double points = each * static_cast<double>(last - first);
+    if (points <= static_cast<double>(cellPoints) || depth == kDeepestCell) {
+      PlanCell cell{tile, static_cast<std::uint8_t>(depth), {}};
+      const std::uint64_t at = code >> 3 * (16 - depth);
+      cell.cell = {static_cast<std::uint16_t>(gatherBits(at)), static_cast<std::uint16_t>(gatherBits(at >> 1)),
+                   static_cast<std::uint16_t>(gatherBits(at >> 2))};
+      m_cells.push_back(cell);
+      expected.push_back(points);
+      return;
+    }
+    for (std::uint64_t octant = 0; octant < 8; ++octant) {
+      const std::uint64_t from = code + (octant << 3 * (15 - depth)), to = from + (std::uint64_t{1} << 3 * (15 - depth));
+      const auto begin = places.begin() + static_cast<std::ptrdiff_t>(first), end = places.begin() + static_cast<std::ptrdiff_t>(last);
+      const auto below = [](const Place& p, std::uint64_t limit) { return p.inTile < limit; };
+      const auto low = std::lower_bound(begin, end, from, below), high = std::lower_bound(begin, end, to, below);
+      self(self, tile, from, depth + 1, static_cast<std::size_t>(low - places.begin()), static_cast<std::size_t>(high - places.begin()));
+    }
+  };
+  for (std::size_t i = 0; i < places.size();) {
+    std::size_t end = i;
+    while (end < places.size() && places[end].tile == places[i].tile) ++end;
+    const std::size_t firstCell = m_cells.size();
+    const glm::ivec3 tile = tileOfCode(places[i].tile);
+    cut(cut, tile, 0, 0, i, end);
+    TileGrid grid;
+    for (std::size_t c = firstCell; c < m_cells.size(); ++c) grid.depth = std::max<int>(grid.depth, m_cells[c].depth);
+    grid.grid.resize(std::size_t{1} << 3 * grid.depth);
+    for (std::size_t c = firstCell; c < m_cells.size(); ++c) {
+      const int spread = grid.depth - m_cells[c].depth;
+      const glm::uvec3 from = glm::uvec3(m_cells[c].cell) << glm::uvec3(static_cast<unsigned>(spread));
+      const std::uint32_t side = 1u << spread;
+      for (std::uint32_t z = from.z; z < from.z + side; ++z)
+        for (std::uint32_t y = from.y; y < from.y + side; ++y)
+          for (std::uint32_t x = from.x; x < from.x + side; ++x)
+            grid.grid[(z << grid.depth | y) << grid.depth | x] = static_cast<std::uint32_t>(c);
+    }
+    m_tiles.emplace(tile, std::move(grid));
+    i = end;
+  }
+  double inStream = 0;
+  for (std::size_t c = 0; c < m_cells.size(); ++c) {
+    if (c > 0 && inStream + expected[c] > static_cast<double>(cellPoints)) ++m_streamCount, inStream = 0;
+    m_streams.push_back(m_streamCount);
+    inStream += expected[c];
+  }
+  if (!m_cells.empty()) ++m_streamCount;
+}
+
+}  // namespace alidade

@@ -1,0 +1,306 @@
+// SPDX-FileCopyrightText: 2026 the Alidade authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "cloud/distribution.h"
+
+#include <algorithm>
+#include <condition_variable>
+#include <cstring>
+#include <deque>
+#include <mutex>
+#include <thread>
+#include <unordered_map>
+
+namespace alidade {
+
+namespace {
+
+constexpr std::uint32_t kOtherStreams = 8;
+
+/// Batches on their way from the reader to the workers, and empty ones on their way back: first touch of
+/// fresh memory costs more than filling it.
+class BatchQueue {
+ public:
+  struct Item {
+    std::uint64_t number = 0;
+    PointBatch batch;
+  };
+  explicit BatchQueue(std::size_t most) : m_most(most) {}
+
+  /// Takes the batch's columns, gives it used ones instead. False where the work has stopped.
+  bool push(std::uint64_t number, PointBatch& batch) {
+    std::unique_lock lock(m_mutex);
+    m_changed.wait(lock, [&] { return m_full.size() < m_most || m_stopped; });
+    if (m_stopped) return false;
+    m_full.push_back({number, {}});
+    std::swap(m_full.back().batch, batch);
+    if (!m_empty.empty()) {
+      std::swap(batch, m_empty.back());
+      m_empty.pop_back();
+    }
+    lock.unlock();
+    m_changed.notify_all();
+    return true;
+  }
+  bool pop(Item& item) {
+    std::unique_lock lock(m_mutex);
+    if (item.batch.size() > 0 && m_empty.size() < m_most) m_empty.push_back(std::move(item.batch));
+    m_changed.wait(lock, [&] { return !m_full.empty() || m_ended || m_stopped; });
+    if (m_full.empty() || m_stopped) return false;
+    item = std::move(m_full.front());
+    m_full.pop_front();
+    lock.unlock();
+    m_changed.notify_all();
+    return true;
+  }
+  void end() {
+    std::lock_guard lock(m_mutex);
+    m_ended = true;
+    m_changed.notify_all();
+  }
+  void stop() {
+    std::lock_guard lock(m_mutex);
+    m_stopped = true;
+    m_changed.notify_all();
+  }
+
+ private:
+  std::size_t m_most;
+  std::mutex m_mutex;
+  std::condition_variable m_changed;
+  std::deque<Item> m_full;
+  std::vector<PointBatch> m_empty;
+  bool m_ended = false, m_stopped = false;
+};
+
+/// Leaves out the points that cannot be used. Returns how many.
+std::uint64_t dropUnusable(PointBatch& batch) {
+  std::vector<std::uint32_t> good;
+  for (std::size_t i = 0; i < batch.size(); ++i)
+    if (isUsablePosition(batch.position[i])) good.push_back(static_cast<std::uint32_t>(i));
+  const std::size_t all = batch.size();
+  if (good.size() == all) return 0;
+  const auto pick = [&](auto& column) {
+    if (column.size() != all) return;
+    for (std::size_t i = 0; i < good.size(); ++i) column[i] = column[good[i]];
+    column.resize(good.size());
+  };
+  for (ExtraColumn& extra : batch.extra) {
+    const std::size_t bytes = extra.bytesPerPoint();
+    if (extra.data.size() != all * bytes) continue;
+    for (std::size_t i = 0; i < good.size(); ++i)
+      std::memmove(extra.data.data() + i * bytes, extra.data.data() + good[i] * bytes, bytes);
+    extra.data.resize(good.size() * bytes);
+  }
+  pick(batch.rgb), pick(batch.intensity), pick(batch.classification), pick(batch.returnNumber), pick(batch.returnCount);
+  pick(batch.gpsTime), pick(batch.normal), pick(batch.scanner), pick(batch.pointSource), pick(batch.row), pick(batch.column);
+  pick(batch.position);
+  return all - good.size();
+}
+
+/// Cells of tiles that the sample did not meet: made as they come, shared by all workers.
+class OtherCells {
+ public:
+  OtherCells(std::uint32_t firstId, std::uint32_t firstStream) : m_firstId(firstId), m_firstStream(firstStream) {}
+
+  std::uint32_t idOf(const glm::ivec3& tile) {
+    std::lock_guard lock(m_mutex);
+    const auto [at, isNew] = m_ids.try_emplace(tile, m_firstId + static_cast<std::uint32_t>(m_tiles.size()));
+    if (isNew) m_tiles.push_back(tile);
+    return at->second;
+  }
+  std::uint32_t streamOf(const glm::ivec3& tile) const {
+    return m_firstStream + static_cast<std::uint32_t>(TileHash()(tile) >> 40) % kOtherStreams;
+  }
+  const std::vector<glm::ivec3>& tiles() const { return m_tiles; }
+
+ private:
+  std::uint32_t m_firstId, m_firstStream;
+  std::mutex m_mutex;
+  std::unordered_map<glm::ivec3, std::uint32_t, TileHash> m_ids;
+  std::vector<glm::ivec3> m_tiles;
+};
+
+class Worker {
+ public:
+  Worker(const ChunkPlan& plan, const Lattice& lattice, const PointSchema& schema, std::uint16_t brightest, OtherCells& others,
+         RecordStreams& streams)
+      : m_plan(plan), m_lattice(lattice), m_schema(schema), m_layout(lattice, schema), m_brightest(brightest), m_others(others),
+        m_finder(plan), m_writer(streams, streamsFor(plan)) {}
+
+  using Outcome = DistributionResult::Outcome;
+
+  Outcome take(std::uint64_t number, PointBatch& batch) {
+    m_dropped += dropUnusable(batch);
+    const std::size_t count = batch.size();
+    if (count == 0) return Outcome::Done;
+    if (!m_schema.covers(batch)) return Outcome::NewColumns;
+    m_units.resize(count);
+    if (!m_lattice.unitsOf(batch.position, m_units.data(), nullptr)) return Outcome::OffLattice;
+    if (!pack(batch)) return Outcome::OffLattice;
+    send(number, count);
+    return Outcome::Done;
+  }
+
+  RecordStreams::Writer& writer() { return m_writer; }
+  const std::vector<std::uint64_t>& counts() const { return m_counts; }
+  std::uint64_t dropped() const { return m_dropped; }
+
+ private:
+  /// The batch as records, and the cell of each.
+  bool pack(const PointBatch& batch) {
+    const std::size_t count = batch.size(), stride = m_layout.bytes;
+    m_records.resize(count * stride);
+    m_cells.resize(count);
+    m_colours.resize(count);
+    displayColours(batch, m_brightest, m_colours.data());
+    for (std::size_t i = 0; i < count; ++i) {
+      const glm::i64vec3& unit = m_units[i];
+      const glm::ivec3 tile(unit >> std::int64_t{16});
+      const glm::u16vec3 place(unit & std::int64_t{0xffff});
+      std::uint32_t cell = m_finder.find(tile, place);
+      if (cell == ChunkPlan::kNone) cell = otherCell(tile);
+      m_cells[i] = cell;
+      const std::uint64_t packed = static_cast<std::uint64_t>(place.x) | static_cast<std::uint64_t>(place.y) << 16 |
+                                   static_cast<std::uint64_t>(place.z) << 32 | static_cast<std::uint64_t>(m_colours[i]) << 48;
+      std::memcpy(m_records.data() + i * stride, &packed, sizeof packed);
+    }
+    if (m_lattice.exactBytes() > 0)
+      for (std::size_t i = 0; i < count; ++i)
+        if (!m_lattice.packExact(batch.position[i], m_records.data() + i * stride + m_layout.exactAt)) return false;
+    m_schema.pack(batch, m_records.data() + m_layout.columnsAt, stride);
+    return true;
+  }
+
+  std::uint32_t otherCell(const glm::ivec3& tile) {
+    const auto found = m_otherIds.find(tile);
+    if (found != m_otherIds.end()) return found->second;
+    const std::uint32_t id = m_others.idOf(tile);
+    m_otherIds.emplace(tile, id);
+    m_otherStreams[id] = m_others.streamOf(tile);
+    return id;
+  }
+
+  std::uint32_t streamOf(std::uint32_t cell) const {
+    return cell < m_plan.cells().size() ? m_plan.streamOf(cell) : m_otherStreams.at(cell);
+  }
+
+  /// Records to their streams, a run a cell, in the batch's order inside it.
+  void send(std::uint64_t number, std::size_t count) {
+    const std::uint32_t most = *std::max_element(m_cells.begin(), m_cells.begin() + static_cast<std::ptrdiff_t>(count));
+    if (m_inBatch.size() <= most) m_inBatch.resize(most + 1), m_counts.resize(most + 1);
+    m_met.clear();
+    for (std::size_t i = 0; i < count; ++i)
+      if (m_inBatch[m_cells[i]]++ == 0) m_met.push_back(m_cells[i]);
+    m_sorted.resize(count);
+    m_next.resize(m_inBatch.size());
+    std::uint32_t sum = 0;
+    for (const std::uint32_t cell : m_met) m_next[cell] = sum, sum += m_inBatch[cell];
+    for (std::size_t i = 0; i < count; ++i) m_sorted[m_next[m_cells[i]]++] = static_cast<std::uint32_t>(i);
+    const std::size_t stride = m_layout.bytes;
+    const std::uint32_t* row = m_sorted.data();
+    for (const std::uint32_t cell : m_met) {
+      m_counts[cell] += m_inBatch[cell];
+      while (m_inBatch[cell] > 0) {
+        std::uint32_t fits = 0;
+        std::byte* to = m_writer.beginRun(streamOf(cell), {cell, m_inBatch[cell], number}, &fits);
+        m_inBatch[cell] -= fits;
+        for (; fits > 0; --fits, to += stride) {
+          const std::byte* from = m_records.data() + *row++ * stride;
+          for (std::size_t word = 0; word < stride; word += 8) std::memcpy(to + word, from + word, 8);
+        }
+      }
+    }
+  }
+
+  const ChunkPlan& m_plan;
+  const Lattice& m_lattice;
+  const PointSchema& m_schema;
+  RecordLayout m_layout;
+  std::uint16_t m_brightest;
+  OtherCells& m_others;
+  CellFinder m_finder;
+  RecordStreams::Writer m_writer;
+  std::vector<glm::i64vec3> m_units;
+  std::vector<std::byte> m_records;
+  std::vector<std::uint32_t> m_cells;
+  std::vector<std::uint16_t> m_colours;
+  std::vector<std::uint32_t> m_inBatch, m_next, m_met, m_sorted;  ///< by cell, by cell, cells, points
+  std::vector<std::uint64_t> m_counts;
+  std::unordered_map<glm::ivec3, std::uint32_t, TileHash> m_otherIds;
+  std::unordered_map<std::uint32_t, std::uint32_t> m_otherStreams;
+  std::uint64_t m_dropped = 0;
+};
+
+}  // namespace
+
+std::uint32_t streamsFor(const ChunkPlan& plan) {
+  return plan.streamCount() + kOtherStreams;
+}
+
+Result<DistributionResult> distribute(const ScanSource& source, const ChunkPlan& plan, const Lattice& lattice,
+                                      const PointSchema& schema, const DistributionOptions& options,
+                                      RecordStreams& streams, const Progress& progress) {
+  DistributionResult result;
+  result.schema = schema;
+  OtherCells others(static_cast<std::uint32_t>(plan.cells().size()), plan.streamCount());
+  BatchQueue queue(static_cast<std::size_t>(options.threads) + 1);
+  std::mutex mutex;
+  std::vector<std::unique_ptr<Worker>> workers;
+  std::vector<std::thread> threads;
+  bool outOfMemory = false;
+  for (int t = 0; t < options.threads; ++t)
+    workers.push_back(std::make_unique<Worker>(plan, lattice, schema, options.brightestIntensity, others, streams));
+  for (int t = 0; t < options.threads; ++t) {
+    threads.emplace_back([&, worker = workers[static_cast<std::size_t>(t)].get()] {
+      try {
+        BatchQueue::Item item;
+        while (queue.pop(item)) {
+          const auto outcome = worker->take(item.number, item.batch);
+          if (outcome == DistributionResult::Outcome::Done) continue;
+          std::lock_guard lock(mutex);
+          result.outcome = outcome;
+          if (outcome == DistributionResult::Outcome::NewColumns) result.schema.include(item.batch);
+          queue.stop();
+        }
+      } catch (const std::bad_alloc&) {
+        std::lock_guard lock(mutex);
+        outOfMemory = true;
+        queue.stop();
+      }
+    });
+  }
+  std::uint64_t number = 0;
+  const auto read = source.read([&](PointBatch& batch) { return !progress.cancelled() && queue.push(number++, batch); }, progress);
+  if (read) queue.end();
+  else queue.stop();
+  for (std::thread& thread : threads) thread.join();
+  Result<void> written;
+  for (auto& worker : workers) {
+    if (auto done = worker->writer().finish(); !done && written) written = done;
+    streams.adopt(worker->writer());
+    result.dropped += worker->dropped();
+  }
+  if (outOfMemory) return fail("There is not enough memory to index the scan", source.name, "Close other programs or allow less memory");
+  if (!written) return fail(written.error());
+  if (progress.cancelled()) return fail(cancelledError());
+  if (result.outcome != DistributionResult::Outcome::Done) return result;
+  if (!read) return fail(read.error());
+
+  const std::size_t cellCount = plan.cells().size() + others.tiles().size();
+  for (std::uint32_t c = 0; c < cellCount; ++c) {
+    const bool planned = c < plan.cells().size();
+    FilledCell filled;
+    filled.id = c;
+    filled.cell = planned ? plan.cells()[c] : PlanCell{others.tiles()[c - plan.cells().size()], 0, {}};
+    filled.stream = planned ? plan.streamOf(c) : others.streamOf(filled.cell.tile);
+    for (const auto& worker : workers) filled.count += c < worker->counts().size() ? worker->counts()[c] : 0;
+    if (filled.count > 0) result.cells.push_back(filled);
+  }
+  std::sort(result.cells.begin(), result.cells.end(),
+            [](const FilledCell& a, const FilledCell& b) { return mortonLess(a.cell, b.cell); });
+  result.streamCount = streamsFor(plan);
+  return result;
+}
+
+}  // namespace alidade

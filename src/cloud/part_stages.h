@@ -1,0 +1,87 @@
+// SPDX-FileCopyrightText: 2026 the Alidade authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <unordered_map>
+#include <vector>
+
+#include "cloud/distribution.h"
+#include "cloud/part_index.h"
+#include "cloud/stream_order.h"
+
+namespace alidade {
+
+/// From points in streams to a tree: stages 3 and 4 of indexPart.
+class PartStages {
+ public:
+  PartStages(const Lattice& lattice, const PointSchema& schema, const TreeOptions& tree, DistributionResult spread,
+             std::unique_ptr<RecordStreams> streams, const PartOptions& options, PartSink& sink);
+  /// Goes on where the diary ends; an Error where it does not say enough.
+  static Result<std::unique_ptr<PartStages>> resume(const std::vector<std::vector<std::byte>>& diary, const PartOptions& options,
+                                                    PartSink& sink);
+
+  /// Opens the sink, and notes in its diary what the streams hold.
+  Result<void> begin();
+  Result<PartTree> run(const Progress& progress);
+
+ private:
+  /// A cell that is done: what is left of it in memory.
+  struct CellDone {
+    std::vector<BuildNode> nodes;  ///< points and tables counted over the whole part
+    std::vector<BorderSample> borders;
+    std::uint64_t topsAt = 0;      ///< bytes into the sink's tops
+    std::uint32_t tops = 0;
+  };
+  /// What a stream adds to the sink's columns.
+  struct Output {
+    std::vector<std::vector<std::byte>> columns;  ///< by PartSink::Column
+    std::uint64_t points = 0;
+    std::vector<std::pair<std::uint32_t, CellDone>> cells;
+  };
+  struct Offsets {
+    std::uint64_t points = 0, tables = 0, tops = 0;
+  };
+  struct Tile {
+    glm::ivec3 tile{0};
+    std::size_t firstCell = 0, lastCell = 0;  ///< into m_spread.cells
+    std::vector<BuildNode> nodes;             ///< above its cells, where it is cut
+    std::vector<BorderSample> borders;
+    bool isCut = false;
+  };
+
+  Result<Output> buildStream(std::uint32_t stream);
+  Result<Output> buildTile(std::uint32_t tile);
+  void emit(Output& output, const SubTree& tree, const std::vector<const std::byte*>& records,
+            std::span<const std::uint32_t> rowOf, CellDone& done);
+  Result<void> commit(Output& output, const Offsets& at);
+  std::uint64_t costOf(std::uint32_t stream) const;
+  std::vector<std::byte> noteOf(std::uint32_t stream, const Output& output, const Offsets& at) const;
+  bool readNote(const std::vector<std::byte>& note);
+
+  Lattice m_lattice;
+  PointSchema m_schema;
+  TreeOptions m_tree;
+  DistributionResult m_spread;
+  std::unique_ptr<RecordStreams> m_streams;
+  const PartOptions& m_options;
+  PartSink& m_sink;
+  RecordLayout m_layout;
+  std::uint64_t m_pointCount = 0;
+
+  std::vector<std::uint32_t> m_usedStreams;                ///< streams that hold points
+  std::vector<std::vector<std::uint32_t>> m_cellsOf;       ///< of each used stream, Morton order
+  std::vector<std::uint64_t> m_streamPoints;
+  std::unordered_map<std::uint32_t, std::uint32_t> m_cellOfId;
+  WorkOrder m_streamOrder, m_tileOrder;
+  std::vector<CellDone> m_done;  ///< by cell
+  std::vector<Tile> m_tiles;
+  std::vector<char> m_streamDone;
+  std::uint64_t m_finished = 0;  ///< streams that the diary vouches for, in work order
+  Offsets m_next;
+  bool m_keepsDiary = false;
+};
+
+}  // namespace alidade

@@ -1,0 +1,163 @@
+// SPDX-FileCopyrightText: 2026 the Alidade authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "cloud/point_schema.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+
+namespace alidade {
+
+namespace {
+
+/// Calls visit(name, type, components, column) for every column of its own that a batch has, filled or not.
+template <class Batch, class Visit>
+void forEachOwnColumn(Batch& batch, const Visit& visit) {
+  visit("rgb", NumberType::U16, 3, batch.rgb);
+  visit("intensity", NumberType::U16, 1, batch.intensity);
+  visit("classification", NumberType::U8, 1, batch.classification);
+  visit("return_number", NumberType::U8, 1, batch.returnNumber);
+  visit("return_count", NumberType::U8, 1, batch.returnCount);
+  visit("gps_time", NumberType::F64, 1, batch.gpsTime);
+  visit("normal", NumberType::F32, 3, batch.normal);
+  visit("scanner", NumberType::U16, 1, batch.scanner);
+  visit("point_source", NumberType::U16, 1, batch.pointSource);
+  visit("row", NumberType::U32, 1, batch.row);
+  visit("column", NumberType::U32, 1, batch.column);
+}
+
+/// The batch's columns as bytes, each with its shape.
+struct ColumnView {
+  ColumnShape shape;
+  const std::byte* data;
+};
+
+std::vector<ColumnView> viewsOf(const PointBatch& batch) {
+  std::vector<ColumnView> views;
+  forEachOwnColumn(batch, [&](const char* name, NumberType type, int components, const auto& column) {
+    if (!column.empty() && column.size() == batch.size())
+      views.push_back({{name, type, components, false}, reinterpret_cast<const std::byte*>(column.data())});
+  });
+  for (const ExtraColumn& extra : batch.extra) {
+    if (extra.data.empty() || extra.data.size() != batch.size() * extra.bytesPerPoint()) continue;
+    ColumnView view{{extra.name, extra.type, extra.components, true}, extra.data.data()};
+    const auto same = [&](const ColumnView& other) { return other.shape == view.shape; };
+    while (std::any_of(views.begin(), views.end(), same)) ++view.shape.ordinal;
+    views.push_back(view);
+  }
+  return views;
+}
+
+template <std::size_t kBytes>
+void scatter(const std::byte* from, std::size_t count, std::byte* to, std::size_t stride) {
+  for (std::size_t i = 0; i < count; ++i) std::memcpy(to + i * stride, from + i * kBytes, kBytes);
+}
+
+void scatterBytes(const std::byte* from, std::size_t bytes, std::size_t count, std::byte* to, std::size_t stride) {
+  switch (bytes) {
+    case 1: scatter<1>(from, count, to, stride); break;
+    case 2: scatter<2>(from, count, to, stride); break;
+    case 4: scatter<4>(from, count, to, stride); break;
+    case 6: scatter<6>(from, count, to, stride); break;
+    case 8: scatter<8>(from, count, to, stride); break;
+    case 12: scatter<12>(from, count, to, stride); break;
+    default:
+      for (std::size_t i = 0; i < count; ++i) std::memcpy(to + i * stride, from + i * bytes, bytes);
+  }
+}
+
+/// 8-bit colours in a store whose white is 65535: 255 * 257 = 65535, and nothing is lost.
+void widenColours(std::byte* first, std::size_t count, std::size_t stride) {
+  for (std::size_t i = 0; i < count; ++i) {
+    std::array<std::uint16_t, 3> rgb;
+    std::memcpy(rgb.data(), first + i * stride, sizeof rgb);
+    for (std::uint16_t& channel : rgb) channel = static_cast<std::uint16_t>(channel * 257);
+    std::memcpy(first + i * stride, rgb.data(), sizeof rgb);
+  }
+}
+
+std::uint16_t rgb565(unsigned r, unsigned g, unsigned b) {
+  return static_cast<std::uint16_t>(((r >> 3) << 11) | ((g >> 2) << 5) | (b >> 3));
+}
+
+}  // namespace
+
+bool PointSchema::include(const PointBatch& batch) {
+  bool added = false;
+  for (const ColumnView& view : viewsOf(batch)) {
+    if (std::find(columns.begin(), columns.end(), view.shape) != columns.end()) continue;
+    columns.push_back(view.shape);
+    added = true;
+  }
+  if (!batch.rgb.empty() && batch.rgbWhite > rgbWhite) {
+    rgbWhite = batch.rgbWhite;
+    added = true;
+  }
+  return added;
+}
+
+bool PointSchema::covers(const PointBatch& batch) const {
+  if (!batch.rgb.empty() && batch.rgbWhite > rgbWhite) return false;
+  for (const ColumnView& view : viewsOf(batch))
+    if (std::find(columns.begin(), columns.end(), view.shape) == columns.end()) return false;
+  return true;
+}
+
+std::size_t PointSchema::bytes() const {
+  std::size_t all = 0;
+  for (const ColumnShape& column : columns) all += column.bytes();
+  return all;
+}
+
+void PointSchema::pack(const PointBatch& batch, std::byte* out, std::size_t stride) const {
+  const std::vector<ColumnView> views = viewsOf(batch);
+  for (const ColumnShape& column : columns) {
+    const auto view = std::find_if(views.begin(), views.end(), [&](const ColumnView& v) { return v.shape == column; });
+    if (view == views.end()) {
+      for (std::size_t i = 0; i < batch.size(); ++i) std::memset(out + i * stride, 0, column.bytes());
+    } else {
+      scatterBytes(view->data, column.bytes(), batch.size(), out, stride);
+      if (!column.extra && column.name == "rgb" && batch.rgbWhite < rgbWhite) widenColours(out, batch.size(), stride);
+    }
+    out += column.bytes();
+  }
+}
+
+void PointSchema::unpack(std::size_t index, const std::byte* bytes, std::size_t count, PointBatch& batch) const {
+  const ColumnShape& shape = columns[index];
+  if (shape.extra) {
+    ExtraColumn& column = batch.extra.emplace_back(ExtraColumn{shape.name, shape.type, shape.components, {}});
+    column.data.assign(bytes, bytes + count * shape.bytes());
+    return;
+  }
+  if (shape.name == "rgb") batch.rgbWhite = rgbWhite;
+  forEachOwnColumn(batch, [&](const char* name, NumberType, int, auto& column) {
+    if (shape.name != name || count == 0) return;
+    column.resize(count);
+    std::memcpy(static_cast<void*>(column.data()), bytes, count * shape.bytes());
+  });
+}
+
+void displayColours(const PointBatch& batch, std::uint16_t brightestIntensity, std::uint16_t* out) {
+  const std::size_t count = batch.size();
+  if (batch.rgb.size() == count) {
+    const int shift = batch.rgbWhite > 255 ? 8 : 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const glm::u16vec3& c = batch.rgb[i];
+      out[i] = rgb565(c.r >> shift & 255, c.g >> shift & 255, c.b >> shift & 255);
+    }
+  } else if (batch.intensity.size() == count && brightestIntensity > 0) {
+    // Returns are few and bright at the top of the range: the root keeps the dark majority readable.
+    const float white = 1.0f / brightestIntensity;
+    for (std::size_t i = 0; i < count; ++i) {
+      const auto gray = static_cast<unsigned>(255.0f * std::sqrt(std::min(1.0f, batch.intensity[i] * white)) + 0.5f);
+      out[i] = rgb565(gray, gray, gray);
+    }
+  } else {
+    std::fill_n(out, count, rgb565(160, 160, 160));
+  }
+}
+
+}  // namespace alidade

@@ -1,0 +1,55 @@
+// SPDX-FileCopyrightText: 2026 the Alidade authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cloud/lattice.h"
+#include "survey/number_type.h"
+#include "survey/point_batch.h"
+
+namespace alidade {
+
+/// One column of a store beside the points' places: what it is called and what it is made of.
+struct ColumnShape {
+  std::string name;  ///< "rgb", "intensity", … as PointSchema names them; an ExtraColumn's own name otherwise
+  NumberType type = NumberType::U16;
+  int components = 1;
+  bool extra = false;  ///< an ExtraColumn of the source
+  int ordinal = 0;     ///< among extra columns of one name and kind, from 0
+
+  std::size_t bytes() const { return numberSize(type) * static_cast<std::size_t>(components); }
+  friend bool operator==(const ColumnShape&, const ColumnShape&) = default;
+};
+
+/// Which columns a store keeps: the union over the source's batches. A batch without a column that others
+/// have counts as zeros there.
+struct PointSchema {
+  std::vector<ColumnShape> columns;
+  std::uint16_t rgbWhite = 255;
+
+  /// Adds what this batch brings. True where something was added.
+  bool include(const PointBatch& batch);
+  /// True where nothing would be added.
+  bool covers(const PointBatch& batch) const;
+  std::size_t bytes() const;
+
+  /// Writes this schema's columns of all points of the batch: record i at out + i * stride, columns one
+  /// after the other. The batch is covered.
+  void pack(const PointBatch& batch, std::byte* out, std::size_t stride) const;
+  /// Puts `count` values of column `index`, one after the other at `bytes`, where they belong in `batch`.
+  void unpack(std::size_t index, const std::byte* bytes, std::size_t count, PointBatch& batch) const;
+
+  friend bool operator==(const PointSchema&, const PointSchema&) = default;
+};
+
+/// The colour to draw a batch's points with: RGB, else intensity as gray, else a middle gray.
+/// `brightestIntensity` is what white stands for.
+void displayColours(const PointBatch& batch, std::uint16_t brightestIntensity, std::uint16_t* rgb565);
+
+}  // namespace alidade

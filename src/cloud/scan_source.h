@@ -1,0 +1,30 @@
+// SPDX-FileCopyrightText: 2026 the Alidade authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <string>
+
+#include "base/error.h"
+#include "base/progress.h"
+#include "survey/point_batch.h"
+
+namespace alidade {
+
+/// A scan that is about to be indexed: what its header says, and how its points are had. Every call of `read`
+/// gives the same points in the same order.
+struct ScanSource {
+  /// May take the batch's columns away; false stops early.
+  using Sink = std::function<bool(PointBatch& batch)>;
+
+  std::string name;      ///< for messages and the manifest
+  std::string identity;  ///< changes when the source does: path, size, time
+  ScanInfo info;
+  std::function<Result<void>(const Sink& sink, const Progress& progress)> read;
+  /// About `wanted` points taken evenly from the whole; empty: `read` is thinned.
+  std::function<Result<void>(std::uint64_t wanted, const Sink& sink, const Progress& progress)> sample;
+};
+
+}  // namespace alidade
