@@ -97,10 +97,10 @@ Error noFit(const std::string& what, const std::string& advice) { return {what, 
 }  // namespace
 
 std::string Registration::report() const {
-  const glm::dvec3 t = fixedFromMoving.translation;
+  const glm::dvec3 t = shiftMeters;
   const double angle = glm::degrees(rotationAngleBetween(fixedFromMoving, RigidTransform::identity()));
   return fmt::format("  pairs     {} ({:.1f} % of the moving points)\n  residuals {:.2f} mm to the surface, {:.2f} mm to the nearest point (rms)\n"
-                     "  rotation  {:.5f}°\n  shift     {:.4f} {:.4f} {:.4f} m\n  steps     {}\n",
+                     "  rotation  {:.5f}°\n  shift     {:.4f} {:.4f} {:.4f} m at the scan's middle\n  steps     {}\n",
                      pairs, 100 * share, 1e3 * rmsPlaneMeters, 1e3 * rmsPointMeters, angle, t.x, t.y, t.z, iterations);
 }
 
@@ -155,6 +155,7 @@ Result<Registration> registerScan(std::span<const glm::dvec3> moving, std::span<
       Registration result;
       const RigidTransform toLocal{glm::dquat(1, 0, 0, 0), -origin}, toWorld{glm::dquat(1, 0, 0, 0), origin};
       result.fixedFromMoving = toWorld * transform * toLocal;
+      result.shiftMeters = transform.translation;
       result.pairs = last.pairs;
       result.share = static_cast<double>(last.pairs) / static_cast<double>(points.size());
       result.rmsPlaneMeters = std::sqrt(last.planeSquares / static_cast<double>(std::max<std::size_t>(last.pairs, 1)));

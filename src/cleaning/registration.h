@@ -25,6 +25,7 @@ struct RegistrationOptions {
 /// How a moving scan fits a fixed one. Residuals are those of the pairs used, after the fit.
 struct Registration {
   RigidTransform fixedFromMoving;   ///< world to world: p' = fixedFromMoving * p
+  glm::dvec3 shiftMeters{0};        ///< how far the moving scan's middle moves
   double rmsPlaneMeters = 0;        ///< along the fixed scan's normals: what the fit made small
   double rmsPointMeters = 0;        ///< between the points themselves; holds their spacing, too
   double share = 0;                 ///< of the moving points with a partner

@@ -59,11 +59,14 @@ CLI::Validator checkedBy(Parse parse, const std::string& name) {
       name);
 }
 
+void addClean(Verbs& verbs);
 void addDemo(Verbs& verbs);
 void addInfo(Verbs& verbs);
 void addNew(Verbs& verbs);
 void addOverlay(Verbs& verbs);
 void addRefine(Verbs& verbs);
 void addProjectPoints(Verbs& verbs);
+void addMesh(Verbs& verbs);
+void addRegister(Verbs& verbs);
 
 }  // namespace alidade::cli

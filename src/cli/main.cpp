@@ -48,6 +48,9 @@ int main(int argc, char** argv) {
   cli::addOverlay(verbs);
   cli::addRefine(verbs);
   cli::addProjectPoints(verbs);
+  cli::addClean(verbs);
+  cli::addRegister(verbs);
+  cli::addMesh(verbs);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -51,6 +51,8 @@ TEST(Registration, FindsAKnownTransformInSurveyCoordinates) {
   // Different points of the same surfaces, 2 mm of noise in both: 36 000 pairs leave some hundredths of a millimetre.
   for (const glm::dvec3 corner : {glm::dvec3(0, 0, 0), glm::dvec3(10, 8, 0), glm::dvec3(0, 8, 3), glm::dvec3(10, 0, 3)})
     EXPECT_LT(glm::length(found->fixedFromMoving * (truth.inverse() * (kSurvey + corner)) - (kSurvey + corner)), 0.0005);
+  // About the middle of the moving scan, whose turn leaves the shift nearly alone.
+  EXPECT_LT(glm::length(found->shiftMeters - glm::dvec3(0.12, -0.08, 0.05)), 0.05);
   EXPECT_NEAR(found->rmsPlaneMeters, 0.002 * std::sqrt(2.0), 0.001);
   EXPECT_GT(found->share, 0.95);
   EXPECT_THAT(found->report(), HasSubstr("pairs"));
