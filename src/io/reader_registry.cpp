@@ -218,6 +218,15 @@ Result<const Reader*> ReaderRegistry::findKind(const std::string& path, ReaderKi
 
 Result<FileProbe> probeFile(const std::string& path, std::vector<std::byte>& headStorage) {
   if (path.empty()) return fail("No file is named", {}, "Give a file or a folder");
+  if (path.starts_with("http://") || path.starts_with("https://")) {
+    // The reader that its ending names asks the server.
+    FileProbe probe;
+    probe.path = path;
+    probe.extension = extensionOf(path);
+    headStorage.assign(1, std::byte{0});
+    probe.head = headStorage;
+    return probe;
+  }
   struct stat status {};
   if (::stat(path.c_str(), &status) != 0) {
     if (errno == ENOENT || errno == ENOTDIR) return fail("The file does not exist", path, "Check the path");

@@ -67,7 +67,8 @@ template <> constexpr ReaderKind ReaderRegistry::kindOf<CameraReader>() { return
 template <> constexpr ReaderKind ReaderRegistry::kindOf<PictureReader>() { return ReaderKind::Pictures; }
 template <> constexpr ReaderKind ReaderRegistry::kindOf<PointListReader>() { return ReaderKind::Points; }
 
-/// Opens the start of a file or looks at a folder. Error where it does not exist or cannot be read.
+/// Opens the start of a file or looks at a folder. Error where it does not exist or cannot be read. Of a web
+/// address (http, https) nothing is asked: its ending alone decides who reads it.
 Result<FileProbe> probeFile(const std::string& path, std::vector<std::byte>& headStorage);
 
 }  // namespace alidade
