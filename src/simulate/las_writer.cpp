@@ -8,6 +8,8 @@
 #include <cmath>
 #include <cstring>
 
+#include <nlohmann/json.hpp>
+
 namespace alidade {
 
 namespace {
@@ -54,9 +56,26 @@ void putExtraBytes(std::vector<unsigned char>& bytes, const char* name, const ch
   std::memcpy(bytes.data() + at + 160, description, std::strlen(description));
 }
 
+std::string stationsRecord(const std::vector<Station>& stations) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < stations.size(); ++i) {
+    const Station& s = stations[i];
+    const glm::dquat& r = s.worldFromScanner.rotation;
+    const glm::dvec3& t = s.worldFromScanner.translation;
+    list.push_back({{"name", s.name},
+                    {"point_source_id", i + 1},
+                    {"rows", s.rows},
+                    {"columns", s.columns},
+                    {"world_from_scanner",
+                     {{"rotation_wxyz", {r.w, r.x, r.y, r.z}}, {"translation_m", {t.x, t.y, t.z}}}}});
+  }
+  return nlohmann::ordered_json{{"stations", list}}.dump();
+}
+
 }  // namespace
 
-Result<void> LasWriter::open(const std::string& path, const glm::dvec3& offset, const std::string& wkt) {
+Result<void> LasWriter::open(const std::string& path, const glm::dvec3& offset, const std::string& wkt,
+                             const std::vector<Station>& stations) {
   if (auto opened = m_file.open(path); !opened) return opened;
   m_offset = glm::round(offset);
   std::vector<unsigned char> bytes(kHeaderSize, 0);
@@ -84,6 +103,10 @@ Result<void> LasWriter::open(const std::string& path, const glm::dvec3& offset, 
     putText(bytes, wkt, wkt.size() + 1);
     ++records;
   }
+  const std::string placed = stationsRecord(stations);
+  putVlrHeader(bytes, "alidade", 1, placed.size(), "Scanner stations");
+  putText(bytes, placed, placed.size());
+  ++records;
   putAt<std::uint32_t>(bytes, 96, static_cast<std::uint32_t>(bytes.size()));
   putAt<std::uint32_t>(bytes, 100, records);
   return m_file.write(bytes.data(), bytes.size());

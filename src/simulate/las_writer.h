@@ -10,6 +10,7 @@
 #include <glm/glm.hpp>
 
 #include "base/error.h"
+#include "survey/point_batch.h"
 #include "simulate/output_file.h"
 
 namespace alidade {
@@ -26,13 +27,16 @@ struct LasPoint {
 };
 
 /// Writes LAS 1.4 point format 7 (ASPRS LAS specification 1.4 R15) with extra bytes `row` and `column`
-/// (uint32), point by point; the header is patched with counts and bounds at the end.
+/// (uint32), point by point; the header is patched with counts and bounds at the end. Where the scanner stood is
+/// written as Alidade's own record: plugins/las/las_stations.h has its layout. A station's point source ID is its place
+/// in the list, from 1.
 class LasWriter {
  public:
   static constexpr double kScale = 0.0001;  ///< metres
 
   /// `offset`: about the middle of the site. `wkt`: of the CRS; may be empty.
-  Result<void> open(const std::string& path, const glm::dvec3& offset, const std::string& wkt);
+  Result<void> open(const std::string& path, const glm::dvec3& offset, const std::string& wkt,
+                    const std::vector<Station>& stations);
   Result<void> write(const std::vector<LasPoint>& points);
   Result<void> finish();
   std::uint64_t count() const { return m_count; }

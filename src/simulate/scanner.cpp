@@ -184,9 +184,11 @@ Result<ScanSummary> writeScan(const std::string& path, const SiteModel& site, co
     station.columns =
         static_cast<std::uint32_t>(std::max(4L, std::lround(2.0 * std::numbers::pi / summary.stepRadians)));
   }
+  std::vector<Station> placed;
+  for (const ScanStation& s : summary.stations) placed.push_back({s.name, s.worldFromScanner, s.rows, s.columns});
   LasWriter las;
   const glm::dvec3 origin = site.worldFromSite.translation;
-  if (auto opened = las.open(path, origin, coordinateSystemAt(origin)); !opened) return fail(opened.error());
+  if (auto opened = las.open(path, origin, coordinateSystemAt(origin), placed); !opened) return fail(opened.error());
   const double share = 1.0 / static_cast<double>(summary.stations.size());
   for (std::size_t i = 0; i < summary.stations.size(); ++i) {
     auto scanned =

@@ -83,6 +83,7 @@ TEST_F(DemoSiteTest, ScanIsValidLas14OfPointFormat7) {
     at += 54 + valueAt<std::uint16_t>(las, at + 20);
   EXPECT_EQ(at, offset);
   EXPECT_NE(las.find("CH1903+ / LV95"), std::string::npos);
+  EXPECT_NE(las.substr(0, offset).find("\"world_from_scanner\""), std::string::npos);
 }
 
 TEST_F(DemoSiteTest, ScanHeaderBoundsHoldEveryPointTightly) {
