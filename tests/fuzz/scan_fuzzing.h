@@ -46,4 +46,14 @@ inline void fuzzScanReader(const ScanReader& reader, const std::uint8_t* data, s
   if (!outcome && outcome.error().what.empty()) std::abort();
 }
 
+/// The same for a reader with a way of its own to take a sample.
+inline void fuzzScanSample(const ScanReader& reader, const std::uint8_t* data, std::size_t size) {
+  const int descriptor = ::memfd_create("fuzz", 0);
+  if (descriptor < 0 || ::write(descriptor, data, size) != static_cast<ssize_t>(size)) std::abort();
+  const std::string path = "/proc/self/fd/" + std::to_string(descriptor);
+  const auto outcome = reader.sample(path, 1000, [](PointBatch&) { return true; }, Progress());
+  ::close(descriptor);
+  if (!outcome && outcome.error().what.empty()) std::abort();
+}
+
 }  // namespace alidade::testing
