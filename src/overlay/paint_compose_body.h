@@ -120,6 +120,31 @@ inline int drawnState(const PaintFrame& f, int x, int y, int key) {
   return own == kBarelyHidden ? kHidden : own;
 }
 
+/// The same for a whole run that is five pixels and more from the picture's sides.
+ALIDADE_LENS_INLINE Ints drawnInside(const PaintFrame& f, const Run& run, const Ints& key, const Ints& drawn,
+                                     const Ints& isOpen) {
+  const Ints own = key & 3, mine = key >> 2;
+  Ints votes[4] = {};  // counted downwards
+  Ints open = isOpen;
+  for (int i = 0; i < 24 && any(open); ++i) {
+    if (i == 8)
+      open &= ~((own == kVisible) & (votes[kVisible] < -2)) &
+              ~((own == kHidden) & (votes[kHidden] + votes[kBarelyHidden] < -3));
+    int k = i & 7;
+    k += k >> 2;
+    const int reach = 2 * (i >> 3) + 1;
+    const int y = clamped(run.y + reach * (k / 3 - 1), f.height), x = run.x + reach * (k % 3 - 1);
+    const Ints other = loadBytes(f.key + static_cast<std::size_t>(y) * f.width + x, kLanes);
+    const Ints same = (other >> 2) == mine;
+    for (int state = 0; state < 4; ++state) votes[state] += same & ((other & 3) == state);
+  }
+  const Ints count = votes[kVisible] + votes[kHidden] + votes[kUnknown];
+  Ints out = drawn;
+  for (const int state : {kUnknown, kHidden, kVisible})
+    out = open & (2 * votes[state] < count) ? all(state) : out;
+  return out;
+}
+
 ALIDADE_LENS_INLINE Ints drawnStates(const PaintFrame& f, const Run& run, const Ints& key) {
   const Ints own = key & 3, mine = key >> 2;
   Ints drawn = own == kBarelyHidden ? all(kHidden) : own;
@@ -129,6 +154,8 @@ ALIDADE_LENS_INLINE Ints drawnStates(const PaintFrame& f, const Run& run, const 
   for (const Ints& other : {a.left, a.right, a.above, a.below})
     isOpen |= (other != key) & ((other >> 2) == mine);
   isOpen &= (key != 0) & (kIota < run.some);
+  if (!any(isOpen)) return drawn;
+  if (run.x >= 5 && run.x + kLanes + 5 <= f.width) return drawnInside(f, run, key, drawn, isOpen);
   for (unsigned left = bitsOf(isOpen); left; left &= left - 1) {
     const int lane = __builtin_ctz(left);
     drawn[lane] = drawnState(f, run.x + lane, run.y, key[lane]);
