@@ -10,17 +10,6 @@
 
 namespace alidade {
 
-namespace {
-
-glm::dquat quaternionOf(const glm::dvec3& rotationVector) {
-  const double angle = glm::length(rotationVector);
-  // sin(angle/2)/angle, by its series near zero.
-  const double share = angle < 1e-4 ? 0.5 - angle * angle / 48 : std::sin(0.5 * angle) / angle;
-  return {std::cos(0.5 * angle), share * rotationVector.x, share * rotationVector.y, share * rotationVector.z};
-}
-
-}  // namespace
-
 PoseProblem::PoseProblem(const Camera& camera, const RigidTransform& start,
                          const std::vector<ResectionObservation>& observations, const ResectionOptions& options)
     : m_camera(camera), m_observations(observations), m_origin(start.centre()) {
@@ -28,6 +17,26 @@ PoseProblem::PoseProblem(const Camera& camera, const RigidTransform& start,
   for (int i = 0; i < 3; ++i)
     if (!options.lockPosition[i]) m_free.push_back(i);
   if (!options.lockAttitude) m_free.insert(m_free.end(), {3, 4, 5});
+  weighAt(m_start);
+}
+
+void PoseProblem::weighAt(const PoseState& state) {
+  m_weights.resize(m_observations.size());
+  const glm::dmat3 rotation = glm::mat3_cast(state.rotation);
+  for (int i = 0; i < size(); ++i) {
+    const ResectionObservation& seen = m_observations[i];
+    glm::dmat2 covariance(seen.sigmaPx * seen.sigmaPx);
+    if (seen.sigmaM > 0) {
+      const glm::dvec3 p = rotation * ((seen.world - m_origin) - state.centre);
+      ProjectionJacobian by;
+      if (p.z > 0 && m_camera.project(p, by)) {
+        // An isotropic point: no rotation in J J^T.
+        const double variance = seen.sigmaM * seen.sigmaM, mixed = variance * glm::dot(by.du, by.dv);
+        covariance += glm::dmat2(variance * glm::dot(by.du, by.du), mixed, mixed, variance * glm::dot(by.dv, by.dv));
+      }
+    }
+    m_weights[i] = glm::inverse(covariance);
+  }
 }
 
 RigidTransform PoseProblem::pose(const PoseState& state) const {
@@ -82,7 +91,8 @@ double PoseProblem::sigmas(const PoseState& state, int observation) const {
   const ResectionObservation& seen = m_observations[observation];
   const glm::dvec3 p = inCamera(state, seen.world);
   if (!(p.z > 1e-9)) return std::numeric_limits<double>::infinity();
-  const double distance = glm::length(m_camera.projectUnchecked(p) - seen.pixel) / seen.sigmaPx;
+  const glm::dvec2 r = m_camera.projectUnchecked(p) - seen.pixel;
+  const double distance = std::sqrt(glm::dot(r, m_weights[observation] * r));
   return std::isfinite(distance) ? distance : std::numeric_limits<double>::infinity();
 }
 
@@ -95,18 +105,40 @@ double PoseProblem::cost(const PoseState& state, const std::vector<int>& chosen)
   return sum;
 }
 
-Matrix6 PoseProblem::normalMatrix(const PoseState& state, const std::vector<int>& chosen) const {
-  Matrix6 normal = Matrix6::Zero();
+PoseProblem::Normals PoseProblem::normals(const PoseState& state, const std::vector<int>& chosen, double huberSigmas,
+                                          bool skipBehind) const {
+  Matrix6 matrix = Matrix6::Zero();
+  Vector6 gradient = Vector6::Zero();
+  Normals sum;
   for (const int i : chosen) {
     const auto at = linearise(state, i);
-    if (!at) continue;
-    const double weight = 1 / (m_observations[i].sigmaPx * m_observations[i].sigmaPx);
-    normal += weight * at->jacobian.transpose() * at->jacobian;
+    if (!at) {
+      if (skipBehind) continue;
+      sum.cost = std::numeric_limits<double>::infinity();
+      return sum;
+    }
+    const glm::dmat2& p = m_weights[i];
+    const glm::dvec2 weighted = p * at->residualPx;
+    const double squares = glm::dot(at->residualPx, weighted), s = std::sqrt(squares);
+    const bool far = huberSigmas > 0 && s > huberSigmas;
+    const double share = far ? huberSigmas / s : 1;
+    sum.cost += far ? huberSigmas * (2 * s - huberSigmas) : squares;
+    Eigen::Matrix2d weight;
+    weight << p[0][0], p[1][0], p[0][1], p[1][1];
+    const Matrix26 half = share * weight * at->jacobian;
+    matrix.noalias() += at->jacobian.transpose() * half;
+    gradient.noalias() += half.transpose() * Eigen::Vector2d(at->residualPx.x, at->residualPx.y);
   }
-  Matrix6 masked = Matrix6::Zero();
-  for (const int r : m_free)
-    for (const int c : m_free) masked(r, c) = normal(r, c);
-  return masked;
+  if (!std::isfinite(sum.cost)) sum.cost = std::numeric_limits<double>::infinity();
+  for (const int r : m_free) {
+    sum.gradient[r] = gradient[r];
+    for (const int c : m_free) sum.matrix(r, c) = matrix(r, c);
+  }
+  return sum;
+}
+
+Matrix6 PoseProblem::normalMatrix(const PoseState& state, const std::vector<int>& chosen) const {
+  return normals(state, chosen, 0, true).matrix;
 }
 
 std::optional<Matrix6> PoseProblem::covariance(const Matrix6& normal) const {
@@ -131,54 +163,36 @@ std::optional<Matrix6> PoseProblem::covariance(const Matrix6& normal) const {
   return covariance;
 }
 
-Vector6 PoseProblem::gradient(const PoseState& state, const std::vector<int>& chosen) const {
-  Vector6 sum = Vector6::Zero(), masked = Vector6::Zero();
-  for (const int i : chosen) {
-    const auto at = linearise(state, i);
-    if (!at) continue;
-    const double weight = 1 / (m_observations[i].sigmaPx * m_observations[i].sigmaPx);
-    sum += weight * at->jacobian.transpose() * Eigen::Vector2d(at->residualPx.x, at->residualPx.y);
-  }
-  for (const int r : m_free) masked[r] = sum[r];
-  return masked;
-}
-
 double PoseProblem::decrement(const PoseState& state, const std::vector<int>& chosen) const {
-  const auto inverse = covariance(normalMatrix(state, chosen));
+  const Normals at = normals(state, chosen, 0, true);
+  const auto inverse = covariance(at.matrix);
   if (!inverse) return std::numeric_limits<double>::infinity();
-  const Vector6 g = gradient(state, chosen);
-  return std::sqrt(std::max(0.0, g.dot(*inverse * g)));
+  return std::sqrt(std::max(0.0, at.gradient.dot(*inverse * at.gradient)));
 }
 
-PoseState PoseProblem::moved(const PoseState& state, const Vector6& step) const {
-  PoseState to;
-  to.centre = state.centre + glm::dvec3(step[0], step[1], step[2]);
-  to.rotation = glm::normalize(quaternionOf({step[3], step[4], step[5]}) * state.rotation);
-  return to;
-}
-
-PoseState PoseProblem::descend(PoseState state, const std::vector<int>& chosen, int iterations) const {
-  double damping = 1e-6, error = cost(state, chosen);
-  for (int i = 0; i < iterations && std::isfinite(error); ++i) {
-    const Matrix6 normal = normalMatrix(state, chosen);
-    const Vector6 slope = gradient(state, chosen);
+PoseState PoseProblem::descend(PoseState state, const std::vector<int>& chosen, int iterations, double huberSigmas,
+                               int* used) const {
+  double damping = 1e-6;
+  Normals at = normals(state, chosen, huberSigmas, false);
+  for (int i = 0; i < iterations && std::isfinite(at.cost); ++i) {
+    if (used) ++*used;
     Matrix6 damped = Matrix6::Identity();
-    Vector6 right = Vector6::Zero();
     for (const int r : m_free) {
-      right[r] = -slope[r];
-      for (const int c : m_free) damped(r, c) = normal(r, c);
-      damped(r, r) = normal(r, r) * (1 + damping) + 1e-30;
+      for (const int c : m_free) damped(r, c) = at.matrix(r, c);
+      damped(r, r) = at.matrix(r, r) * (1 + damping) + 1e-30;
     }
-    const Vector6 step = damped.ldlt().solve(right);
+    const Vector6 step = damped.ldlt().solve(-at.gradient);
     if (!step.allFinite()) break;
-    const PoseState next = moved(state, step);
-    const double nextError = cost(next, chosen);
-    if (nextError < error) {
-      const bool done = error - nextError < 1e-12 * error;
-      state = next, error = nextError;
+    const PoseState next = moved(state, step.data());
+    const Normals there = normals(next, chosen, huberSigmas, false);
+    if (there.cost < at.cost) {
+      const bool done = at.cost - there.cost < 1e-14 * at.cost;
+      state = next, at = there;
       damping = std::max(1e-12, damping * 0.1);
       if (done) break;
     } else {
+      // A step too short to change the cost's last digits.
+      if (-at.gradient.dot(step) < 1e-13 * at.cost) break;
       damping = std::max(1e-6, damping * 10);
       if (damping > 1e8) break;
     }

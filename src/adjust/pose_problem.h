@@ -8,18 +8,11 @@
 
 #include <Eigen/Core>
 
+#include "adjust/pose_state.h"
 #include "adjust/resection.h"
 
 namespace alidade {
 
-/// A pose as the solver holds it: the camera centre relative to the problem's origin, and the attitude.
-struct PoseState {
-  glm::dvec3 centre{0};                     ///< metres from PoseProblem::origin()
-  glm::dquat rotation{1.0, 0.0, 0.0, 0.0};  ///< camera axes from world axes, unit
-};
-
-using Vector6 = Eigen::Matrix<double, 6, 1>;
-using Matrix6 = Eigen::Matrix<double, 6, 6>;
 using Matrix26 = Eigen::Matrix<double, 2, 6>;
 
 /// Residual of one observation and its derivatives.
@@ -57,7 +50,11 @@ class PoseProblem {
   /// Nothing for a point behind the camera.
   std::optional<Linearised> linearise(const PoseState& state, int observation) const;
   std::optional<Linearised> lineariseAt(const PoseState& state, const glm::dvec3& world) const;
-  /// |residual| / sigma; infinite behind the camera.
+  /// Inverse covariance of each observation's pixel, the point's own standard deviation carried into the picture at
+  /// this state; from the start state until called again.
+  void weighAt(const PoseState& state);
+  const glm::dmat2& weight(int observation) const { return m_weights[observation]; }
+  /// |residual| in standard deviations; infinite behind the camera.
   double sigmas(const PoseState& state, int observation) const;
   /// Sum of squared sigmas over the chosen observations; infinite where one is behind the camera.
   double cost(const PoseState& state, const std::vector<int>& chosen) const;
@@ -71,19 +68,26 @@ class PoseProblem {
   /// infinite where the normal equations are singular.
   double decrement(const PoseState& state, const std::vector<int>& chosen) const;
 
-  /// Levenberg-Marquardt on few observations, quick and without allocation of a solver; for
-  /// hypotheses. Returns where it stood last.
-  PoseState descend(PoseState state, const std::vector<int>& chosen, int iterations) const;
+  /// Levenberg-Marquardt, with Huber's loss where `huberSigmas` > 0. Returns where it stood last; `used` counts the
+  /// iterations.
+  PoseState descend(PoseState state, const std::vector<int>& chosen, int iterations, double huberSigmas = 0,
+                    int* used = nullptr) const;
 
  private:
-  PoseState moved(const PoseState& state, const Vector6& step) const;
-  Vector6 gradient(const PoseState& state, const std::vector<int>& chosen) const;
+  /// Normal equations of the free columns and the (robust) sum of squares; infinite cost behind the camera.
+  struct Normals {
+    Matrix6 matrix = Matrix6::Zero();
+    Vector6 gradient = Vector6::Zero();
+    double cost = 0;
+  };
+  Normals normals(const PoseState& state, const std::vector<int>& chosen, double huberSigmas, bool skipBehind) const;
 
   const Camera& m_camera;
   const std::vector<ResectionObservation>& m_observations;
   glm::dvec3 m_origin{0};
   PoseState m_start;
   std::vector<int> m_free;
+  std::vector<glm::dmat2> m_weights;
 };
 
 }  // namespace alidade

@@ -5,13 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <exception>
 #include <limits>
 #include <random>
-
-#include <ceres/ceres.h>
-
-#include "adjust/reprojection_cost.h"
 
 namespace alidade {
 
@@ -19,62 +14,6 @@ namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr double largestScale = 20;
-
-void lockBlocks(const PoseProblem& problem, ceres::Problem& solver, double* centre, double* rotation) {
-  std::vector<int> locked;
-  for (int i = 0; i < 3; ++i)
-    if (std::find(problem.freeColumns().begin(), problem.freeColumns().end(), i) == problem.freeColumns().end())
-      locked.push_back(i);
-  if (locked.size() == 3)
-    solver.SetParameterBlockConstant(centre);
-  else if (!locked.empty())
-    solver.SetManifold(centre, new ceres::SubsetManifold(3, locked));
-  if (problem.attitudeFree())
-    solver.SetManifold(rotation, new ceres::QuaternionManifold);
-  else
-    solver.SetParameterBlockConstant(rotation);
-}
-
-PoseSolution solveUnguarded(const PoseProblem& problem, const PoseState& start, const std::vector<int>& chosen,
-                            double huberSigmas, int maximumIterations) {
-  double centre[3] = {start.centre.x, start.centre.y, start.centre.z};
-  double rotation[4] = {start.rotation.w, start.rotation.x, start.rotation.y, start.rotation.z};
-  ceres::Problem solver;
-  for (const int i : chosen) {
-    const ResectionObservation& seen = problem.observations()[i];
-    auto* cost = new ReprojectionCost{&problem.camera(), seen.pixel, seen.world - problem.origin(), seen.sigmaPx};
-    solver.AddResidualBlock(new ceres::AutoDiffCostFunction<ReprojectionCost, 2, 3, 4>(cost),
-                            huberSigmas > 0 ? new ceres::HuberLoss(huberSigmas) : nullptr, centre, rotation);
-  }
-  lockBlocks(problem, solver, centre, rotation);
-
-  ceres::Solver::Options options;
-  options.linear_solver_type = ceres::DENSE_QR;
-  options.max_num_iterations = maximumIterations;
-  // Tighter, and rounding makes the last steps look invalid.
-  options.function_tolerance = 1e-11;
-  options.gradient_tolerance = 1e-12;
-  options.parameter_tolerance = 1e-11;
-  options.max_num_consecutive_invalid_steps = 20;
-  options.logging_type = ceres::SILENT;
-  options.num_threads = 1;
-  ceres::Solver::Summary summary;
-  ceres::Solve(options, &solver, &summary);
-
-  PoseSolution solution;
-  solution.state.centre = {centre[0], centre[1], centre[2]};
-  solution.state.rotation = glm::normalize(glm::dquat(rotation[0], rotation[1], rotation[2], rotation[3]));
-  solution.iterations = summary.num_successful_steps + summary.num_unsuccessful_steps;
-  solution.message = summary.message;
-  if (huberSigmas > 0) {
-    solution.converged = summary.termination_type == ceres::CONVERGENCE;
-  } else if (summary.termination_type != ceres::FAILURE) {
-    // Newton's last digits, then the honest question: how far, in standard deviations, is the next step?
-    solution.state = problem.descend(solution.state, chosen, 4);
-    solution.converged = summary.termination_type == ceres::CONVERGENCE && problem.decrement(solution.state, chosen) < 1e-4;
-  }
-  return solution;
-}
 
 double medianSigmas(const PoseProblem& problem, const PoseState& state, const std::vector<int>& usable, int rank) {
   std::vector<double> all;
@@ -91,9 +30,12 @@ std::vector<int> within(const PoseProblem& problem, const PoseState& state, cons
   return near;
 }
 
-double truncatedCost(const PoseProblem& problem, const PoseState& state, const std::vector<int>& usable, double limit) {
+/// Stops adding where the sum has reached `enough`.
+double truncatedCost(const PoseProblem& problem, const PoseState& state, const std::vector<int>& usable, double limit,
+                     double enough = infinity) {
   double sum = 0;
   for (const int i : usable) {
+    if (sum >= enough) break;
     const double s = std::min(limit, problem.sigmas(state, i));
     sum += s * s;
   }
@@ -135,7 +77,9 @@ std::vector<Hypothesis> subsetHypotheses(const PoseProblem& problem, const std::
     const std::vector<int> subset(deck.begin(), deck.begin() + size);
     Hypothesis made;
     made.state = problem.descend(trial % 2 ? robust : problem.startState(), subset, 20);
-    made.score = truncatedCost(problem, made.state, usable, limit);
+    const double worst = static_cast<int>(best.size()) < kept ? infinity : best.back().score;
+    made.score = truncatedCost(problem, made.state, usable, limit, worst);
+    if (made.score >= worst) continue;
     best.push_back(made);
     std::sort(best.begin(), best.end(), [](const auto& a, const auto& b) { return a.score < b.score; });
     if (static_cast<int>(best.size()) > kept) best.pop_back();
@@ -155,14 +99,11 @@ double robustScale(const PoseProblem& problem, const PoseState& state, const std
 
 PoseSolution solvePose(const PoseProblem& problem, const PoseState& start, const std::vector<int>& chosen,
                        double huberSigmas, int maximumIterations) {
-  try {
-    return solveUnguarded(problem, start, chosen, huberSigmas, maximumIterations);
-  } catch (const std::exception& error) {
-    PoseSolution failed;
-    failed.state = start;
-    failed.message = error.what();
-    return failed;
-  }
+  PoseSolution solution;
+  solution.state = problem.descend(start, chosen, maximumIterations, huberSigmas, &solution.iterations);
+  // The honest question: how far, in standard deviations, is the next step?
+  solution.converged = huberSigmas > 0 || problem.decrement(solution.state, chosen) < 1e-4;
+  return solution;
 }
 
 Consensus findConsensus(const PoseProblem& problem, const std::vector<int>& usable, const ResectionOptions& options) {
@@ -180,7 +121,13 @@ Consensus findConsensus(const PoseProblem& problem, const std::vector<int>& usab
     if (options.huberSigmas <= 0) return found;
   }
   const double limit = options.outlierSigmas;
-  if (static_cast<int>(within(problem, found.state, usable, limit).size()) == n) return found;
+  const std::vector<int> near = within(problem, found.state, usable, limit);
+  if (static_cast<int>(near.size()) == n) return found;
+  if (n >= 50 && 10 * static_cast<int>(near.size()) >= 9 * n) {
+    found.state = settled(problem, found.state, usable, limit);
+    found.inliers = within(problem, found.state, usable, limit);
+    return found;
+  }
 
   std::vector<Hypothesis> all = subsetHypotheses(problem, usable, found.state, 3 * limit);
   all.push_back({found.state, infinity});
@@ -196,7 +143,8 @@ Consensus findConsensus(const PoseProblem& problem, const std::vector<int>& usab
   }
   found.state = best.state;
   found.inliers = within(problem, best.state, usable, limit);
-  if (2 * static_cast<int>(found.inliers.size()) >= n || !std::isfinite(leastScale)) return found;
+  // A half of right picks misses one or two beyond the limit by chance.
+  if (7 * static_cast<int>(found.inliers.size()) >= 3 * n || !std::isfinite(leastScale)) return found;
 
   const double scale = std::clamp(leastScale, 1.0, largestScale);
   const PoseState wide = settled(problem, median.state, usable, limit * scale);

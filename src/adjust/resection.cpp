@@ -28,9 +28,12 @@ constexpr double chiSquared95 = 5.991464547107979;  // two degrees of freedom
 double standardised(const PoseProblem& problem, const PoseState& state, const Matrix6& covariance, int i, bool used) {
   const auto at = problem.linearise(state, i);
   if (!at) return std::numeric_limits<double>::infinity();
-  const double variance = problem.observations()[i].sigmaPx * problem.observations()[i].sigmaPx;
+  const glm::dmat2 given = glm::inverse(problem.weight(i));
+  const double variance = std::max(given[0][0], given[1][1]);
   const Eigen::Matrix2d byPose = at->jacobian * covariance * at->jacobian.transpose();
-  const Eigen::Matrix2d own = variance * Eigen::Matrix2d::Identity() + (used ? -1 : 1) * byPose;
+  Eigen::Matrix2d own;
+  own << given[0][0], given[1][0], given[0][1], given[1][1];
+  own += (used ? -1 : 1) * byPose;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(own);
   const Eigen::Vector2d r = axes.eigenvectors().transpose() * Eigen::Vector2d(at->residualPx.x, at->residualPx.y);
   double sum = 0;
@@ -38,10 +41,10 @@ double standardised(const PoseProblem& problem, const PoseState& state, const Ma
   return std::sqrt(sum);
 }
 
-/// Among n right picks the worst one lies beyond this in one set of a thousand: sqrt(2 ln(n / 0.001)), as
+/// Among n right picks the worst one lies beyond this in one set of a hundred thousand: sqrt(2 ln(n 10⁵)), as
 /// P(|r| > k sigma) = exp(-k²/2). Below it, dropping a pick costs more than it saves.
 double chanceLimit(std::size_t n) {
-  return std::sqrt(2 * std::log(1000.0 * static_cast<double>(n)));
+  return std::sqrt(2 * std::log(1e5 * static_cast<double>(n)));
 }
 
 struct Adjusted {
@@ -134,6 +137,20 @@ ExpectedError expectedAt(const PoseProblem& problem, const PoseState& state, con
   return expected;
 }
 
+void describeCorrelations(ResectionSummary& summary) {
+  static constexpr const char* names[] = {"E", "N", "H", "the rotation about x", "the rotation about y", "the rotation about z"};
+  constexpr double high = 0.95;
+  for (int r = 0; r < 6; ++r)
+    for (int c = 0; c < r; ++c) {
+      const double product = summary.covariance[r][r] * summary.covariance[c][c];
+      if (!(product > 0)) continue;
+      const double correlation = summary.covariance[r][c] / std::sqrt(product);
+      if (std::abs(correlation) > high)
+        summary.correlations.push_back(fmt::format("{} and {} can hardly be told apart (correlation {:.3f})", names[c],
+                                                   names[r], correlation));
+    }
+}
+
 ResectionSummary refused(ResectionSummary summary, std::string reason) {
   summary.converged = false;
   summary.reason = std::move(reason);
@@ -162,6 +179,8 @@ void describe(ResectionSummary& summary, const PoseProblem& problem, const PoseS
     summary.positionStdM[i] = std::sqrt(covariance(i, i));
     summary.rotationStdRad[i] = std::sqrt(covariance(3 + i, 3 + i));
   }
+  summary.ellipse = positionEllipse(summary.covariance);
+  describeCorrelations(summary);
   for (const glm::dvec3& at : options.at) summary.expected.push_back(expectedAt(problem, state, covariance, at));
 }
 
@@ -184,7 +203,7 @@ Result<ResectionSummary> resect(const Camera& camera, const RigidTransform& star
                                 const std::vector<ResectionObservation>& observations,
                                 const ResectionOptions& options) {
   if (const auto valid = options.validate(); !valid) return fail(valid.error().in("resection options"));
-  const PoseProblem problem(camera, startCameraFromWorld, observations, options);
+  PoseProblem problem(camera, startCameraFromWorld, observations, options);
   ResectionSummary summary;
   summary.cameraFromWorld = startCameraFromWorld;
   if (const auto why = refusalOfInput(problem, startCameraFromWorld)) return refused(summary, *why);
@@ -209,12 +228,13 @@ Result<ResectionSummary> resect(const Camera& camera, const RigidTransform& star
                                         "numbers and the start pose", agreeing, problem.size()));
   if (const auto why = refusalOfTwoPoses(problem, consensus.state, consensus.inliers, consensus.scale))
     return refused(summary, *why);
+  problem.weighAt(consensus.state);
   const double limit = std::max(options.outlierSigmas, chanceLimit(usable.size())) * consensus.scale;
   const Adjusted done = adjust(problem, consensus.state, consensus.inliers, usable, limit, options);
   summary.iterations += done.iterations;
   if (!done.solution.converged)
-    return refused(summary, fmt::format("The solution did not settle within {} iterations ({}); give a better start pose",
-                                        options.maximumIterations, done.solution.message));
+    return refused(summary, fmt::format("The solution did not settle within {} iterations; give a better start pose",
+                                        options.maximumIterations));
   if (const auto why = refusalOfGeometry(problem, done.inliers)) return refused(summary, *why);
   if (const auto why = refusalOfWeakness(problem, done.solution.state, done.inliers, consensus.scale))
     return refused(summary, *why);

@@ -9,6 +9,7 @@
 
 #include <glm/glm.hpp>
 
+#include "adjust/pose_accuracy.h"
 #include "base/error.h"
 #include "camera/camera.h"
 #include "geometry/rigid_transform.h"
@@ -21,6 +22,7 @@ struct ResectionObservation {
   glm::dvec3 world{0};
   double sigmaPx = 0.5;
   std::string name;
+  double sigmaM = 0;  ///< of the world point on each axis: a point picked in a scan
 };
 
 struct ResectionOptions {
@@ -28,7 +30,7 @@ struct ResectionOptions {
   bool lockAttitude = false;
   double huberSigmas = 2.5;   ///< robust loss: observations beyond this many sigmas lose weight; 0: none
   /// A standardised residual beyond this is an outlier and takes no part, once it is also beyond what
-  /// chance gives the worst of so many right picks in one set of a thousand (20 picks: 4.5).
+  /// chance gives the worst of so many right picks in one set of a hundred thousand (20 picks: 5.4).
   double outlierSigmas = 3.5;
   int maximumIterations = 100;
   std::vector<glm::dvec3> at; ///< object points where the expected error is wanted, world
@@ -43,14 +45,6 @@ struct ResectionResidual {
   bool outlier = false;      ///< took no part in the adjustment
 };
 
-/// Uncertainty of the overlay at an object point, from the pose's covariance.
-struct ExpectedError {
-  glm::dvec3 world{0};
-  double ellipseSemiMajorPx = 0, ellipseSemiMinorPx = 0;  ///< 95 %
-  double ellipseAngleRad = 0;                             ///< of the major axis, from +u to +v
-  double millimetres = 0;  ///< 95 %: major axis at the point's depth, perpendicular to the ray
-};
-
 struct ResectionSummary {
   bool converged = false;
   std::string reason;                ///< why it ended, or why it was refused
@@ -58,9 +52,9 @@ struct ResectionSummary {
   int iterations = 0;
   double rmsPx = 0;                  ///< of the inliers
   double sigma0 = 0;                 ///< a posteriori standard deviation of unit weight
-  /// Rows and columns: centre E, N, H (metres), then rotation about the camera's x, y, z (radians).
-  /// Locked parameters have zero rows. Scaled by the given sigmas (a priori).
-  std::array<std::array<double, 6>, 6> covariance{};
+  Covariance6 covariance{};          ///< of the camera's pose
+  PositionEllipse ellipse;           ///< 95 % confidence of the camera's centre
+  std::vector<std::string> correlations;  ///< pairs of parameters that can hardly be told apart, as sentences
   glm::dvec3 positionStdM{0};
   glm::dvec3 rotationStdRad{0};
   std::vector<ResectionResidual> residuals;
@@ -70,7 +64,7 @@ struct ResectionSummary {
   std::string report() const;        ///< a page of text
 };
 
-/// Refines one pose from point observations with the camera's full lens (Ceres, Huber loss).
+/// Refines one pose from point observations with the camera's full lens (Levenberg-Marquardt, Huber loss).
 /// A set that cannot determine the free parameters (too few, collinear, in one spot, behind the
 /// camera, non-finite) is refused: converged false, reason says which and what to do.
 /// Error only for bad options.

@@ -27,10 +27,11 @@ std::string nameOf(const PoseProblem& problem, int i) {
   return name.empty() ? fmt::format("observation {}", i + 1) : fmt::format("observation \"{}\"", name);
 }
 
-/// Points closer than a micrometre, or than what a double holds at their coordinates, are one.
-int distinctPoints(const PoseProblem& problem, const std::vector<int>& chosen) {
+/// Points closer than a micrometre, or than what a double holds at their coordinates, are one. Counts to `enough`.
+int distinctPoints(const PoseProblem& problem, const std::vector<int>& chosen, int enough) {
   std::vector<glm::dvec3> kept;
   for (const int i : chosen) {
+    if (static_cast<int>(kept.size()) >= enough) break;
     const glm::dvec3 p = problem.observations()[i].world;
     const double same = 1e-6 + 4e-16 * glm::length(p);
     if (std::none_of(kept.begin(), kept.end(), [&](const glm::dvec3& k) { return glm::length(k - p) < same; }))
@@ -88,6 +89,8 @@ std::optional<std::string> refusalOfInput(const PoseProblem& problem, const Rigi
       return fmt::format("{} holds a coordinate that is not a finite number; correct or delete it", nameOf(problem, i));
     if (!(o.sigmaPx > 0) || !std::isfinite(o.sigmaPx))
       return fmt::format("{} has the standard deviation {} px; it must be positive", nameOf(problem, i), o.sigmaPx);
+    if (!(o.sigmaM >= 0) || !std::isfinite(o.sigmaM))
+      return fmt::format("The point of {} has the standard deviation {} m; it must be zero or positive", nameOf(problem, i), o.sigmaM);
   }
   return std::nullopt;
 }
@@ -97,7 +100,7 @@ std::optional<std::string> refusalOfGeometry(const PoseProblem& problem, const s
   if (static_cast<int>(chosen.size()) < needed)
     return fmt::format("{} observations for {} free parameters, at least {} are needed; pick more points",
                        chosen.size(), problem.freeCount(), needed);
-  const int distinct = distinctPoints(problem, chosen);
+  const int distinct = distinctPoints(problem, chosen, needed);
   if (distinct < needed)
     return fmt::format("The {} observations are of {} different points only, at least {} are needed; the others are "
                        "duplicates: pick other points", chosen.size(), distinct, needed);

@@ -27,6 +27,9 @@ std::string ResectionSummary::report() const {
                    positionStdM.z);
     const glm::dvec3 mgon = rotationStdRad * gonFromRadians(1000);
     fmt::format_to(out, "                      about x {:.2f}  y {:.2f}  z {:.2f} mgon\n", mgon.x, mgon.y, mgon.z);
+    fmt::format_to(out, "  95 % ellipse        {:.4f} × {:.4f} m at {:.0f} gon, height ± {:.4f} m\n", ellipse.semiMajorM,
+                   ellipse.semiMinorM, gonFromRadians(ellipse.azimuthRad), ellipse.heightM);
+    for (const std::string& sentence : correlations) fmt::format_to(out, "  {}\n", sentence);
     fmt::format_to(out, "  Observations        {}, of them {} outliers\n", residuals.size(), outlierCount());
     fmt::format_to(out, "  Residual rms        {:.3f} px, sigma0 {:.3f}, {} iterations\n", rmsPx, sigma0, iterations);
   }

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "adjust/pose_problem.h"
-#include "adjust/reprojection_cost.h"
+#include "ceres_cost.h"
 #include "sites.h"
 
 namespace alidade {

@@ -9,7 +9,7 @@
 
 namespace alidade {
 
-/// Weighted reprojection residual of one observation for automatic differentiation:
+/// Weighted reprojection residual of one observation for Ceres' automatic differentiation, the tests' oracle:
 /// (projected - observed) / sigma, through the lens of lens_kernel.h.
 ///
 /// Unknowns: the camera centre relative to `origin` (3, metres), so that survey coordinates of 10⁷ m
@@ -22,7 +22,14 @@ struct ReprojectionCost {
 
   template <class T>
   bool operator()(const T* centre, const T* q, T* residual) const {
-    const T d[3] = {worldFromOrigin.x - centre[0], worldFromOrigin.y - centre[1], worldFromOrigin.z - centre[2]};
+    const T world[3] = {T(worldFromOrigin.x), T(worldFromOrigin.y), T(worldFromOrigin.z)};
+    return (*this)(centre, q, world, residual);
+  }
+
+  /// The same with the point unknown as well.
+  template <class T>
+  bool operator()(const T* centre, const T* q, const T* world, T* residual) const {
+    const T d[3] = {world[0] - centre[0], world[1] - centre[1], world[2] - centre[2]};
     // p = d + 2 w (v × d) + 2 v × (v × d), v the quaternion's vector part.
     const T c[3] = {q[2] * d[2] - q[3] * d[1], q[3] * d[0] - q[1] * d[2], q[1] * d[1] - q[2] * d[0]};
     const T x = d[0] + 2.0 * (q[0] * c[0] + q[2] * c[2] - q[3] * c[1]);
