@@ -29,6 +29,7 @@ struct NewProjectInputs {
   std::vector<std::string> images;   ///< folders or files
   std::vector<std::string> videos;
   std::vector<std::string> cameras;  ///< poses and intrinsics
+  std::vector<std::string> rigs;     ///< rig files: a sensor's trajectory and the cameras on it, with their pictures
   std::vector<std::string> stakePoints;
   std::vector<std::string> controlPoints;
 };

@@ -9,6 +9,7 @@
 #include "app/pose_matching.h"
 #include "io/project_store.h"
 #include "io/reader_registry.h"
+#include "io/rig_file.h"
 
 namespace alidade {
 
@@ -98,11 +99,34 @@ class Assembler {
   }
 
   Result<void> addCameras(const std::string& path) {
-    const auto reader = ReaderRegistry::instance().findAs<CameraReader>(path);
-    if (!reader) return fail(reader.error());
-    auto set = (*reader)->inspect(path);
+    auto set = inspectCameras(path);
     if (!set) return fail(set.error());
-    m_cameras.push_back({path, std::move(*set)});
+    m_cameras.push_back({path, std::move(*set), {}});
+    return {};
+  }
+
+  /// Every camera of the rig brings its own pictures, and the sensor's trajectory moved to its place.
+  Result<void> addRig(const std::string& path) {
+    const auto rig = readRigFile(path);
+    if (!rig) return fail(rig.error());
+    const auto trajectory = inspectCameras(rig->trajectory);
+    if (!trajectory) return fail(trajectory.error());
+    for (const RigCamera& camera : rig->cameras) {
+      auto calibration = inspectCameras(camera.calibration);
+      if (!calibration) return fail(calibration.error());
+      if (calibration->cameras.size() != 1)
+        return fail("The calibration describes " + std::to_string(calibration->cameras.size()) + " cameras, not one", camera.calibration,
+                    "Give every camera of the rig a calibration file of its own");
+      const std::size_t before = project().frames.size();
+      if (auto added = addPictures(camera.pictures); !added) return added;
+      CameraSource source{path, rigCameraSet(*trajectory, camera.sensorFromCamera, calibration->cameras.front(), rig->timeOffsetSecs), {}};
+      for (std::size_t i = before; i < project().frames.size(); ++i) {
+        Frame& frame = project().frames[i];
+        if (camera.rateHz) frame.timeSecs = camera.startSecs + static_cast<double>(i - before) / *camera.rateHz;
+        source.only.push_back(frame.id);
+      }
+      if (!source.only.empty()) m_cameras.push_back(std::move(source));
+    }
     return {};
   }
 
@@ -126,7 +150,7 @@ class Assembler {
     switch ((*reader)->kind()) {
       case ReaderKind::Scan: return addScan(path);
       case ReaderKind::Design: return addDesign(path);
-      case ReaderKind::Pictures: return addPictures(path);
+      case ReaderKind::Pictures: return addPicturesWithSidecars(path);
       case ReaderKind::Cameras: return addCameras(path);
       case ReaderKind::Points: return addPoints(path, stemOf(path).find("control") != std::string::npos);
     }
@@ -149,6 +173,20 @@ class Assembler {
   Project& project() { return m_outcome.project; }
 
  private:
+  /// A folder may hold its pictures' cameras beside them (XMP).
+  Result<void> addPicturesWithSidecars(const std::string& path) {
+    std::error_code ignored;
+    const bool sidecars = std::filesystem::is_directory(path, ignored) && ReaderRegistry::instance().findAs<CameraReader>(path);
+    if (auto added = addPictures(path); !added || !sidecars) return added;
+    return addCameras(path);
+  }
+
+  static Result<CameraSet> inspectCameras(const std::string& path) {
+    const auto reader = ReaderRegistry::instance().findAs<CameraReader>(path);
+    if (!reader) return fail(reader.error());
+    return (*reader)->inspect(path);
+  }
+
   Result<void> addVideo(const std::string& path, const PictureSetInfo& set) {
     auto source = describeSource(path);
     if (!source) return fail(source.error());
@@ -260,6 +298,7 @@ Result<NewProjectOutcome> newProject(const NewProjectInputs& inputs, const Progr
   if (auto r = each(inputs.designs, [&](Path p) { return assembler.addDesign(p); }); !r) return fail(r.error());
   if (auto r = each(inputs.images, [&](Path p) { return assembler.addPictures(p); }); !r) return fail(r.error());
   if (auto r = each(inputs.videos, [&](Path p) { return assembler.addPictures(p); }); !r) return fail(r.error());
+  if (auto r = each(inputs.rigs, [&](Path p) { return assembler.addRig(p); }); !r) return fail(r.error());
   if (auto r = each(inputs.cameras, [&](Path p) { return assembler.addCameras(p); }); !r) return fail(r.error());
   if (auto r = each(inputs.stakePoints, [&](Path p) { return assembler.addPoints(p, false); }); !r) return fail(r.error());
   if (auto r = each(inputs.controlPoints, [&](Path p) { return assembler.addPoints(p, true); }); !r) return fail(r.error());

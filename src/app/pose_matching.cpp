@@ -8,16 +8,41 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
+#include <optional>
+#include <string_view>
+#include <tuple>
 #include <unordered_map>
+
+#include "plugin_api/picture_header.h"
 
 namespace alidade {
 
 namespace {
 
-std::string matchKey(const std::string& name) {
-  std::string key = std::filesystem::path(name).stem().string();
+/// Lower case, slashes as separators, and without the ending where that is a picture's: "frame.0012" is a
+/// name, "frame.jpg" has an ending.
+std::string matchPath(const std::string& name) {
+  std::string key = name;
   std::transform(key.begin(), key.end(), key.begin(), [](unsigned char c) { return std::tolower(c); });
+  std::replace(key.begin(), key.end(), '\\', '/');
+  const std::string extension = std::filesystem::path(key).extension().string();
+  if (extension.size() > 1 && isPictureExtension(extension.substr(1))) key.resize(key.size() - extension.size());
   return key;
+}
+
+std::string lastPart(const std::string& path) { return path.substr(path.rfind('/') + 1); }
+
+/// How many parts of two paths agree, counted from their ends.
+std::size_t commonParts(std::string_view a, std::string_view b) {
+  std::size_t parts = 0;
+  for (;;) {
+    const auto slashA = a.rfind('/'), slashB = b.rfind('/');
+    if (a.substr(slashA + 1) != b.substr(slashB + 1)) return parts;
+    ++parts;
+    if (slashA == std::string_view::npos || slashB == std::string_view::npos) return parts;
+    a = a.substr(0, slashA);
+    b = b.substr(0, slashB);
+  }
 }
 
 CameraId nextCameraId(const Project& project) {
@@ -26,47 +51,116 @@ CameraId nextCameraId(const Project& project) {
   return CameraId{highest + 1};
 }
 
-/// Adds the cameras of a set to the project; the ids by the set's own index.
-std::vector<CameraId> addCameras(Project& project, const CameraSource& source) {
-  std::vector<CameraId> ids;
-  const std::string stem = std::filesystem::path(source.path).stem().string();
-  for (std::size_t i = 0; i < source.set.cameras.size(); ++i) {
-    CameraRecord record;
-    record.id = nextCameraId(project);
-    record.name = source.set.cameras.size() == 1 ? stem : stem + " " + std::to_string(i + 1);
-    record.camera = Camera(source.set.cameras[i]);
-    ids.push_back(record.id);
-    project.cameras.push_back(std::move(record));
+/// The cameras of a set in the project: ids by the set's own index. A camera whose file states no picture size
+/// enters the project with the first picture that uses it, once for every size.
+class SetCameras {
+ public:
+  SetCameras(Project& project, const CameraSource& source);
+
+  /// Nothing where the set has no such camera, or the frame's picture cannot be measured for one without size.
+  std::optional<CameraId> forFrame(int camera, const Frame& frame);
+  std::optional<CameraId> theOnlyOne() const { return m_ids.size() == 1 && m_ids[0] ? std::optional(m_ids[0]) : std::nullopt; }
+  std::size_t unmeasured() const { return m_unmeasured; }
+
+ private:
+  CameraId add(const Intrinsics& intrinsics, int index);
+
+  Project& m_project;
+  const CameraSource& m_source;
+  std::vector<CameraId> m_ids;
+  std::map<std::tuple<int, int, int>, CameraId> m_sized;
+  std::size_t m_unmeasured = 0;
+};
+
+CameraId SetCameras::add(const Intrinsics& intrinsics, int index) {
+  const std::string stem = std::filesystem::path(m_source.path).stem().string();
+  CameraRecord record;
+  record.id = nextCameraId(m_project);
+  record.name = m_source.set.cameras.size() == 1 ? stem : stem + " " + std::to_string(index + 1);
+  record.camera = Camera(intrinsics);
+  const CameraId id = record.id;
+  m_project.cameras.push_back(std::move(record));
+  return id;
+}
+
+SetCameras::SetCameras(Project& project, const CameraSource& source) : m_project(project), m_source(source) {
+  const auto& unsized = source.set.camerasWithoutSize;
+  for (int i = 0; i < static_cast<int>(source.set.cameras.size()); ++i) {
+    const bool hasSize = std::find(unsized.begin(), unsized.end(), i) == unsized.end();
+    m_ids.push_back(hasSize ? add(source.set.cameras[std::size_t(i)], i) : CameraId{});
   }
-  return ids;
+}
+
+std::optional<CameraId> SetCameras::forFrame(int camera, const Frame& frame) {
+  if (camera < 0 || camera >= static_cast<int>(m_ids.size())) return std::nullopt;
+  if (m_ids[std::size_t(camera)]) return m_ids[std::size_t(camera)];
+  const auto header = frame.image.path.empty() ? Result<PictureHeader>(fail("")) : readPictureHeader(frame.image.path);
+  if (!header) {
+    ++m_unmeasured;
+    return std::nullopt;
+  }
+  CameraId& id = m_sized[{camera, header->width, header->height}];
+  if (!id) {
+    Intrinsics intrinsics = m_source.set.cameras[std::size_t(camera)];
+    intrinsics.width = header->width;
+    intrinsics.height = header->height;
+    intrinsics.cx = 0.5 * (header->width - 1);
+    intrinsics.cy = 0.5 * (header->height - 1);
+    id = add(intrinsics, camera);
+  }
+  return id;
 }
 
 bool hasNames(const CameraSet& set) {
   return std::any_of(set.pictures.begin(), set.pictures.end(), [](const auto& p) { return !p.name.empty(); });
 }
 
-void givePose(Frame& frame, const PosedPicture& picture, const std::vector<CameraId>& ids, PoseSource how) {
+void givePose(Frame& frame, const PosedPicture& picture, SetCameras& cameras, PoseSource how) {
   if (!frame.cameraFromWorld && picture.cameraFromWorld) {
     frame.cameraFromWorld = picture.cameraFromWorld;
     frame.poseSource = how;
   }
-  if (!frame.camera && picture.camera >= 0 && picture.camera < static_cast<int>(ids.size()))
-    frame.camera = ids[picture.camera];
+  if (!frame.camera)
+    if (const auto camera = cameras.forFrame(picture.camera, frame)) frame.camera = *camera;
   if (picture.hasTime) frame.timeSecs = picture.timeSecs;
 }
 
-/// Poses whose picture name no frame has.
-std::size_t matchByName(Project& project, const CameraSet& set, const std::vector<CameraId>& ids) {
-  std::unordered_map<std::string, const PosedPicture*> byKey;
-  for (const auto& picture : set.pictures) byKey.emplace(matchKey(picture.name), &picture);
-  std::size_t matched = 0;
-  for (Frame& frame : project.frames) {
-    const auto it = byKey.find(matchKey(frame.name));
-    if (it == byKey.end()) continue;
-    givePose(frame, *it->second, ids, PoseSource::File);
-    ++matched;
+struct NameMatch {
+  std::size_t left = 0;       ///< poses whose picture no frame is
+  std::size_t ambiguous = 0;  ///< frames that several poses fit equally well
+};
+
+/// By the last part of the path; among several of that name by the most parts in common.
+NameMatch matchByName(const std::vector<Frame*>& frames, const CameraSet& set, SetCameras& cameras) {
+  std::vector<std::string> paths;
+  std::unordered_map<std::string, std::vector<std::size_t>> byName;
+  for (std::size_t i = 0; i < set.pictures.size(); ++i) {
+    paths.push_back(matchPath(set.pictures[i].name));
+    byName[lastPart(paths.back())].push_back(i);
   }
-  return byKey.size() - matched;
+  std::vector<bool> taken(set.pictures.size(), false);
+  NameMatch match;
+  for (Frame* each : frames) {
+    Frame& frame = *each;
+    const std::string path = matchPath(frame.image.path.empty() ? frame.name : frame.image.path);
+    auto found = byName.find(lastPart(path));
+    if (found == byName.end()) found = byName.find(lastPart(matchPath(frame.name)));
+    if (found == byName.end()) continue;
+    std::size_t best = 0, most = 0, equal = 0;
+    for (const std::size_t i : found->second) {
+      const std::size_t parts = commonParts(path, paths[i]);
+      if (parts > most || equal == 0) best = i, most = parts, equal = 1;
+      else if (parts == most) ++equal;
+    }
+    if (equal > 1 && set.pictures[found->second.front()].name != set.pictures[found->second.back()].name) {
+      ++match.ambiguous;
+      continue;
+    }
+    givePose(frame, set.pictures[best], cameras, PoseSource::File);
+    taken[best] = true;
+  }
+  for (std::size_t i = 0; i < taken.size(); ++i) match.left += !taken[i] && set.pictures[i].cameraFromWorld;
+  return match;
 }
 
 /// A trajectory: poses by time, sorted.
@@ -103,25 +197,26 @@ struct Trajectory {
   }
 };
 
-bool framesHaveTimes(const Project& project) {
-  return project.frames.size() > 1 && project.frames.back().timeSecs > project.frames.front().timeSecs;
+bool haveTimes(const std::vector<Frame*>& frames) {
+  return frames.size() > 1 && frames.back()->timeSecs > frames.front()->timeSecs;
 }
 
 /// True where the trajectory could be laid on the frames at all.
-bool matchTrajectory(Project& project, const CameraSet& set, const std::vector<CameraId>& ids) {
-  if (set.pictures.size() == project.frames.size()) {
-    for (std::size_t i = 0; i < project.frames.size(); ++i)
-      givePose(project.frames[i], set.pictures[i], ids, PoseSource::File);
+bool matchTrajectory(const std::vector<Frame*>& frames, const CameraSet& set, SetCameras& cameras) {
+  if (set.pictures.size() == frames.size()) {
+    for (std::size_t i = 0; i < frames.size(); ++i) givePose(*frames[i], set.pictures[i], cameras, PoseSource::File);
     return true;
   }
-  if (!framesHaveTimes(project)) return false;
+  if (!haveTimes(frames)) return false;
   const Trajectory trajectory(set);
   bool any = false;
-  for (Frame& frame : project.frames) {
-    if (frame.cameraFromWorld) continue;
-    frame.cameraFromWorld = trajectory.at(frame.timeSecs);
-    if (!frame.cameraFromWorld) continue;
-    frame.poseSource = PoseSource::Interpolated;
+  for (Frame* frame : frames) {
+    if (frame->cameraFromWorld) continue;
+    frame->cameraFromWorld = trajectory.at(frame->timeSecs);
+    if (!frame->cameraFromWorld) continue;
+    frame->poseSource = PoseSource::Interpolated;
+    if (!frame->camera)
+      if (const auto camera = cameras.theOnlyOne()) frame->camera = *camera;
     any = true;
   }
   return any;
@@ -147,6 +242,16 @@ void dropUnusedCameras(Project& project) {
     std::erase_if(project.cameras, [&](const CameraRecord& record) { return !used(record); });
 }
 
+std::vector<Frame*> framesOf(Project& project, const CameraSource& source) {
+  std::vector<Frame*> frames;
+  const auto serves = [&](const Frame& frame) {
+    return source.only.empty() || std::find(source.only.begin(), source.only.end(), frame.id) != source.only.end();
+  };
+  for (Frame& frame : project.frames)
+    if (serves(frame)) frames.push_back(&frame);
+  return frames;
+}
+
 void noteGaps(const Project& project, std::vector<std::string>& notes) {
   std::size_t poseless = 0, cameraless = 0;
   for (const Frame& frame : project.frames) {
@@ -155,7 +260,7 @@ void noteGaps(const Project& project, std::vector<std::string>& notes) {
   }
   if (poseless > 0)
     notes.push_back(count(poseless, "picture has", "pictures have") +
-                    " no pose. Add a COLMAP model that names it, or a trajectory that covers its time");
+                    " no pose. Add cameras that name it, or a trajectory that covers its time");
   if (cameraless > 0)
     notes.push_back(count(cameraless, "picture has", "pictures have") +
                     " no camera. Add a calibration: a COLMAP model or an OpenCV calibration file");
@@ -163,29 +268,53 @@ void noteGaps(const Project& project, std::vector<std::string>& notes) {
 
 }  // namespace
 
+CameraSet rigCameraSet(const CameraSet& sensorTrajectory, const RigidTransform& sensorFromCamera, const Intrinsics& intrinsics,
+                       double timeOffsetSecs) {
+  CameraSet set;
+  set.cameras = {intrinsics};
+  set.pictures = sensorTrajectory.pictures;
+  const RigidTransform cameraFromSensor = sensorFromCamera.inverse();
+  for (PosedPicture& picture : set.pictures) {
+    picture.camera = 0;
+    picture.timeSecs -= timeOffsetSecs;
+    if (picture.cameraFromWorld) picture.cameraFromWorld = cameraFromSensor * *picture.cameraFromWorld;
+  }
+  return set;
+}
+
 std::vector<std::string> matchPoses(Project& project, const std::vector<CameraSource>& sources) {
   std::vector<std::string> notes;
+  std::optional<CameraId> calibration;
   for (const CameraSource& source : sources) {
-    const std::vector<CameraId> ids = addCameras(project, source);
+    SetCameras cameras(project, source);
     const CameraSet& set = source.set;
+    if (set.pictures.empty() && !calibration) calibration = cameras.theOnlyOne();
     for (const auto& warning : set.warnings) notes.push_back(warning.what + " (" + warning.where + ")");
-    if (set.pictures.empty() || project.frames.empty()) continue;
+    const std::vector<Frame*> frames = framesOf(project, source);
+    if (set.pictures.empty() || frames.empty()) continue;
     if (hasNames(set)) {
-      const std::size_t left = matchByName(project, set, ids);
+      const auto [left, ambiguous] = matchByName(frames, set, cameras);
+      if (ambiguous > 0)
+        notes.push_back(count(ambiguous, "picture is", "pictures are") + " named like several in " + source.path +
+                        ": none was chosen. Keep the pictures in folders called as there");
       if (left > 0)
         notes.push_back(count(left, "pose of ", "poses of ") + source.path + (left == 1 ? " has" : " have") +
                         " no picture here. Add the folder that holds them if they are wanted");
-    } else if (!matchTrajectory(project, set, ids)) {
+    } else if (!matchTrajectory(frames, set, cameras)) {
       notes.push_back("The trajectory " + source.path + " could not be laid on the pictures: they have no times, and it has " +
                       count(set.pictures.size(), "pose", "poses") + " for " +
-                      count(project.frames.size(), "picture", "pictures") +
+                      count(frames.size(), "picture", "pictures") +
                       ". Add a COLMAP model that names the pictures, or the video itself");
     }
+    if (cameras.unmeasured() > 0)
+      notes.push_back(source.path + " states no picture size, and " + count(cameras.unmeasured(), "picture", "pictures") +
+                      " could not be measured for it. Add a calibration file");
   }
   shareTheOnlyCamera(project);
-  // A calibration without pictures beside a model that names them: whoever is still without takes the first.
+  // A calibration beside poses without cameras: whoever is still without takes it. Never some model's camera: it is
+  // another picture's.
   for (Frame& frame : project.frames)
-    if (!frame.camera && frame.cameraFromWorld && !project.cameras.empty()) frame.camera = project.cameras.front().id;
+    if (!frame.camera && frame.cameraFromWorld && calibration) frame.camera = *calibration;
   dropUnusedCameras(project);
   noteGaps(project, notes);
   return notes;

@@ -15,13 +15,20 @@ namespace alidade {
 struct CameraSource {
   std::string path;
   CameraSet set;
+  std::vector<FrameId> only = {};  ///< the frames that it may serve (a rig's camera); all where empty
 };
 
+/// A sensor's trajectory as that of a camera on it: cameraFromWorld = cameraFromSensor sensorFromWorld for every pose;
+/// times lose `timeOffsetSecs` (trajectory's clock minus the pictures'). The set's only camera is `intrinsics`.
+CameraSet rigCameraSet(const CameraSet& sensorTrajectory, const RigidTransform& sensorFromCamera, const Intrinsics& intrinsics,
+                       double timeOffsetSecs);
+
 /// Gives every frame of the project the camera and the pose that the sources hold for it:
-/// by picture name (with or without its ending, case ignored), else by time within the trajectory
+/// by picture name (with or without its ending, case ignored; of several pictures of one name the one whose folders
+/// agree with the picture's path, none where that does not tell), else by time within the trajectory
 /// (interpolated, never beyond its ends or across a gap of more than three steps), else by order
 /// where the counts agree. A set of one camera and no pictures (a calibration file) serves all frames
-/// of its size that have none. Frames that already have a pose keep it.
+/// that have none. A camera without a size of its own takes that of its picture. Frames that already have a pose keep it.
 ///
 /// Returns a sentence for each thing that found no partner, with the next step.
 std::vector<std::string> matchPoses(Project& project, const std::vector<CameraSource>& sources);

@@ -4,7 +4,6 @@
 #include "io/known_formats.h"
 
 #include <algorithm>
-#include <filesystem>
 
 #include <fmt/format.h>
 
@@ -19,13 +18,11 @@ struct KnownFormat {
   std::string_view extensions;  ///< between blanks, lower case
 };
 
-constexpr std::string_view kAsColmap = "Import it into COLMAP and export the model as text";
 constexpr std::string_view kAsIfc = "Export it from the design program as IFC4, IFC2x3, OBJ or glTF";
 constexpr std::string_view kAsPicture = "Develop it to TIFF, PNG or JPEG without lens correction";
 
 // By content first: an ending says what somebody called the file, not what it is.
 constexpr KnownFormat kFormats[] = {
-    {"Bundler model", kAsColmap, "# Bundle file", ""},
     {"AutoCAD drawing (DWG)", kAsIfc, "AC10", "dwg"},
     {"scanner maker's scan", "Export it from the maker's program as LAS or PLY", "", "fls rcp rcs zfs rxp rdbx lgs imp"},
     {"pose graph (g2o)", "Export the poses as a COLMAP text model or a TUM trajectory", "", "g2o"},
@@ -51,19 +48,9 @@ Error refusal(const FileProbe& probe, std::string_view name, std::string_view ad
 }  // namespace
 
 std::optional<Error> refusalOfKnownFormat(const FileProbe& probe) {
-  if (probe.isFolder) {
-    std::error_code ignored;
-    if (std::filesystem::exists(std::filesystem::path(probe.path) / "cameras.bin", ignored))
-      return refusal(probe, "COLMAP binary model", "Export it as text: colmap model_converter --output_type TXT");
-    return std::nullopt;
-  }
+  if (probe.isFolder) return std::nullopt;
   for (const KnownFormat& format : kFormats)
     if (!format.magic.empty() && probe.startsWith(format.magic)) return refusal(probe, format.name, format.advice);
-  const std::string file = std::filesystem::path(probe.path).filename().string();
-  if (file == "cameras.bin" || file == "images.bin" || file == "points3D.bin")
-    return refusal(probe, "COLMAP binary model", "Export it as text: colmap model_converter --output_type TXT");
-  if (probe.holds("<document version") && probe.holds("<chunk"))
-    return refusal(probe, "Metashape cameras (XML)", "Export the cameras from Metashape in COLMAP's format, as text");
   if (probe.holds("<LandXML")) return refusal(probe, "LandXML", kAsIfc);
   for (const KnownFormat& format : kFormats)
     if (namesExtension(format.extensions, probe.extension)) return refusal(probe, format.name, format.advice);
