@@ -173,6 +173,8 @@ double PoseProblem::decrement(const PoseState& state, const std::vector<int>& ch
 PoseState PoseProblem::descend(PoseState state, const std::vector<int>& chosen, int iterations, double huberSigmas,
                                int* used) const {
   double damping = 1e-6;
+  // A robust solution only starts what least squares finishes.
+  const double enough = huberSigmas > 0 ? 1e-5 : 1e-14;
   Normals at = normals(state, chosen, huberSigmas, false);
   for (int i = 0; i < iterations && std::isfinite(at.cost); ++i) {
     if (used) ++*used;
@@ -186,13 +188,16 @@ PoseState PoseProblem::descend(PoseState state, const std::vector<int>& chosen, 
     const PoseState next = moved(state, step.data());
     const Normals there = normals(next, chosen, huberSigmas, false);
     if (there.cost < at.cost) {
-      const bool done = at.cost - there.cost < 1e-14 * at.cost;
+      const bool done = at.cost - there.cost < enough * at.cost;
       state = next, at = there;
       damping = std::max(1e-12, damping * 0.1);
       if (done) break;
     } else {
-      // A step too short to change the cost's last digits.
-      if (-at.gradient.dot(step) < 1e-13 * at.cost) break;
+      // A step too short to change the cost's last digits is still the better state.
+      if (-at.gradient.dot(step) < 1e-13 * at.cost) {
+        if (std::isfinite(there.cost)) state = next;
+        break;
+      }
       damping = std::max(1e-6, damping * 10);
       if (damping > 1e8) break;
     }

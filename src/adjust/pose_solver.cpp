@@ -113,13 +113,14 @@ Consensus findConsensus(const PoseProblem& problem, const std::vector<int>& usab
   const int n = static_cast<int>(usable.size());
   // Far from the solution every residual is an outlier: the loss narrows as the pose improves.
   const double first = std::max(options.huberSigmas, medianSigmas(problem, found.state, usable, n / 2));
-  for (const double width : {first, options.huberSigmas}) {
-    const PoseSolution solution =
-        solvePose(problem, found.state, usable, options.huberSigmas > 0 ? width : 0, options.maximumIterations);
+  const auto solveWith = [&](double width) {
+    const PoseSolution solution = solvePose(problem, found.state, usable, width, options.maximumIterations);
     found.state = solution.state;
     found.iterations += solution.iterations;
-    if (options.huberSigmas <= 0) return found;
-  }
+  };
+  if (options.huberSigmas > 0 && first > 2 * options.huberSigmas) solveWith(first);
+  solveWith(options.huberSigmas);
+  if (options.huberSigmas <= 0) return found;
   const double limit = options.outlierSigmas;
   const std::vector<int> near = within(problem, found.state, usable, limit);
   if (static_cast<int>(near.size()) == n) return found;

@@ -34,7 +34,8 @@ double standardised(const PoseProblem& problem, const PoseState& state, const Ma
   Eigen::Matrix2d own;
   own << given[0][0], given[1][0], given[0][1], given[1][1];
   own += (used ? -1 : 1) * byPose;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(own);
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
+  axes.computeDirect(own);
   const Eigen::Vector2d r = axes.eigenvectors().transpose() * Eigen::Vector2d(at->residualPx.x, at->residualPx.y);
   double sum = 0;
   for (int k = 0; k < 2; ++k) sum += r[k] * r[k] / std::max(axes.eigenvalues()[k], 0.01 * variance);
