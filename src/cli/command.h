@@ -67,6 +67,7 @@ void addNew(Verbs& verbs);
 void addOverlay(Verbs& verbs);
 void addRefine(Verbs& verbs);
 void addProjectPoints(Verbs& verbs);
+void addExportCameras(Verbs& verbs);
 void addMesh(Verbs& verbs);
 void addRegister(Verbs& verbs);
 

@@ -49,6 +49,7 @@ int main(int argc, char** argv) {
   cli::addOverlay(verbs);
   cli::addRefine(verbs);
   cli::addProjectPoints(verbs);
+  cli::addExportCameras(verbs);
   cli::addClean(verbs);
   cli::addRegister(verbs);
   cli::addMesh(verbs);

@@ -74,7 +74,8 @@ void addNew(Verbs& verbs) {
   command->add_option("--design", arguments->inputs.designs, "IFC, OBJ, glTF, STL");
   command->add_option("--images", arguments->inputs.images, "Folders of pictures, or pictures");
   command->add_option("--video", arguments->inputs.videos, "Video files");
-  command->add_option("--cameras", arguments->inputs.cameras, "COLMAP models, calibrations, trajectories");
+  command->add_option("--cameras", arguments->inputs.cameras, "COLMAP, Metashape, Bundler, transforms.json, XMP; calibrations, trajectories, tables");
+  command->add_option("--rig", arguments->inputs.rigs, "Rig files: a sensor's trajectory and the cameras on it");
   command->add_option("--stake", arguments->inputs.stakePoints, "Stake-out points, CSV");
   command->add_option("--control", arguments->inputs.controlPoints, "Control points, CSV");
   command->add_option("--files", arguments->files, "Anything of the above, told apart by content");
