@@ -59,4 +59,19 @@ TEST(TextFile, QuotesAFilesWordsPrintably) {
   EXPECT_EQ(quotedWords("abcdef", 3), "'abc…'");
 }
 
+TEST(TextFile, ARunOfNumbersIsNumbersAloneAndNoMoreThanWanted) {
+  EXPECT_EQ(parseNumbers(" 1 -2.5\n3e2\t", 3), (std::vector<double>{1, -2.5, 300}));
+  EXPECT_EQ(parseNumbers("", 3), std::vector<double>());
+  EXPECT_FALSE(parseNumbers("1 2 3 4", 3));
+  EXPECT_FALSE(parseNumbers("1 two", 3));
+}
+
+TEST(TextFile, TheDepthOfAJsonTextLeavesOutItsStrings) {
+  EXPECT_EQ(jsonDepth(""), 0u);
+  EXPECT_EQ(jsonDepth("{\"a\": [1, {}]}"), 3u);
+  EXPECT_EQ(jsonDepth("[\"[[[\\\"[[[\", []]"), 2u);
+  EXPECT_EQ(jsonDepth("]]]["), 1u);
+  EXPECT_EQ(jsonDepth(std::string(1000, '[')), 1000u);
+}
+
 }  // namespace alidade
