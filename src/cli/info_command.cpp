@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 
@@ -93,13 +94,16 @@ Result<Description> describe(const CameraReader& reader, const std::string& path
               {"warnings", Json::array()}};
   for (const auto& warning : set->warnings) out.json["warnings"].push_back(warning.what + " (" + warning.where + ")");
   out.text = fmt::format("  poses     {}\n", set->pictures.size());
-  for (const Intrinsics& camera : set->cameras) {
+  for (std::size_t i = 0; i < set->cameras.size(); ++i) {
+    const Intrinsics& camera = set->cameras[i];
+    const auto& unsized = set->camerasWithoutSize;
+    const bool hasSize = std::find(unsized.begin(), unsized.end(), static_cast<int>(i)) == unsized.end();
     const double foldBack = Camera(camera).foldBackRadius();
-    out.json["cameras"].push_back({{"model", cameraModelName(camera.model)}, {"width", camera.width},
-                                   {"height", camera.height}, {"parameters", camera.parameters()},
+    out.json["cameras"].push_back({{"model", cameraModelName(camera.model)}, {"width", hasSize ? Json(camera.width) : Json(nullptr)},
+                                   {"height", hasSize ? Json(camera.height) : Json(nullptr)}, {"parameters", camera.parameters()},
                                    {"fold_back_radius", std::isfinite(foldBack) ? Json(foldBack) : Json(nullptr)}});
-    out.text += fmt::format("  camera    {} {} × {} px, f {:.2f} px", cameraModelName(camera.model), camera.width,
-                            camera.height, camera.fx);
+    const std::string size = hasSize ? fmt::format("{} × {} px", camera.width, camera.height) : "of its picture's size";
+    out.text += fmt::format("  camera    {} {}, f {:.2f} px", cameraModelName(camera.model), size, camera.fx);
     out.text += std::isfinite(foldBack) ? fmt::format(", folds back at r = {:.3f}\n", foldBack) : "\n";
   }
   return out;

@@ -149,4 +149,52 @@ TEST(Info, RefusesAnUnreadSchemaByName) {
   EXPECT_NE(outcome.output.find("IFC4X3"), std::string::npos) << outcome.output;
 }
 
+// Metashape's own export in place of the COLMAP model: the same pose, the same lens, so the same pixels.
+TEST(Road, MetashapesXmlAndItsColmapModelSeeTheSamePixels) {
+  const auto road = sharedData("road");
+  if (road.empty()) GTEST_SKIP() << "the road data set is not here";
+  std::array<nlohmann::json, 2> points;
+  for (int i = 0; i < 2; ++i) {
+    const auto project = scratch() / (i == 0 ? "road_xml.alidade" : "road_sparse.alidade");
+    const auto made = alidadeCli("new --json " + quoted(project) + " --images " + quoted(road / "101_0367_0007.JPG") + " --cameras " +
+                                 quoted(road / (i == 0 ? "road.xml" : "sparse")));
+    ASSERT_EQ(made.exitCode, 0) << made.errors << made.output;
+    EXPECT_EQ(made.json()["frames_with_pose"], 1);
+    const auto projected = alidadeCli("project-points --json " + quoted(project) + " --frame 0",
+                                      "100590 196280 6\n100593 196285 6.2\n100600 196290 6\n100588 196275 5\n");
+    ASSERT_EQ(projected.exitCode, 0) << projected.errors;
+    points[std::size_t(i)] = projected.json()["points"];
+  }
+  std::size_t seen = 0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    if (points[0][i]["u_px"].is_null() || points[1][i]["u_px"].is_null()) continue;
+    ++seen;
+    EXPECT_NEAR(points[0][i]["u_px"], points[1][i]["u_px"], 2e-3);
+    EXPECT_NEAR(points[0][i]["v_px"], points[1][i]["v_px"], 2e-3);
+  }
+  EXPECT_GE(seen, 2u);
+}
+
+TEST(Road, ExportedCamerasMakeTheSameProjectAgain) {
+  const auto road = sharedData("road");
+  if (road.empty()) GTEST_SKIP() << "the road data set is not here";
+  const auto project = scratch() / "road_export.alidade";
+  const std::string images = " --images " + quoted(road / "101_0367_0007.JPG") + " --cameras ";
+  ASSERT_EQ(alidadeCli("new " + quoted(project) + images + quoted(road / "road.xml")).exitCode, 0);
+  const std::string input = "100590 196280 6\n100593 196285 6.2\n";
+  const auto expected = alidadeCli("project-points --json " + quoted(project) + " --frame 0", input).json()["points"];
+  for (const char* target : {"exported_sparse", "exported.json"}) {
+    const auto done = alidadeCli("export-cameras --json " + quoted(project) + " -o " + quoted(scratch() / target));
+    ASSERT_EQ(done.exitCode, 0) << done.output;
+    EXPECT_EQ(done.json()["frames"], 1);
+    EXPECT_EQ(alidadeCli("export-cameras " + quoted(project) + " -o " + quoted(scratch() / target)).exitCode, 1) << "nothing is overwritten unasked";
+    const auto again = scratch() / (std::string(target) + ".alidade");
+    ASSERT_EQ(alidadeCli("new " + quoted(again) + images + quoted(scratch() / target)).exitCode, 0);
+    const auto points = alidadeCli("project-points --json " + quoted(again) + " --frame 0", input).json()["points"];
+    for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(points[i]["u_px"], expected[i]["u_px"], 1e-5) << target;
+  }
+  const auto table = alidadeCli("export-cameras " + quoted(project) + " -o " + quoted(scratch() / "exported.csv"));
+  EXPECT_EQ(table.exitCode, 0);
+}
+
 }  // namespace alidade::test
