@@ -60,7 +60,8 @@ int PoseProblem::pointsNeeded() const {
 }
 
 std::optional<Linearised> PoseProblem::lineariseAt(const PoseState& state, const glm::dvec3& world) const {
-  const glm::dvec3 p = inCamera(state, world);
+  const glm::dmat3 rotation = glm::mat3_cast(state.rotation);
+  const glm::dvec3 p = rotation * ((world - m_origin) - state.centre);
   if (!(p.z > 1e-9)) return std::nullopt;
   const double x = p.x / p.z, y = p.y / p.z;
   const DistortedPoint at = m_camera.domain().distortedWithJacobian(x, y);
@@ -69,7 +70,6 @@ std::optional<Linearised> PoseProblem::lineariseAt(const PoseState& state, const
     return focal / p.z * glm::dvec3(byX, byY, -(byX * x + byY * y));
   };
   const glm::dvec3 rows[2] = {chained(in.fx, at.dx.x, at.dy.x), chained(in.fy, at.dx.y, at.dy.y)};
-  const glm::dmat3 rotation = glm::mat3_cast(state.rotation);
   Linearised to;
   to.residualPx = {in.fx * at.position.x + in.cx, in.fy * at.position.y + in.cy};
   for (int i = 0; i < 2; ++i) {
@@ -123,12 +123,18 @@ PoseProblem::Normals PoseProblem::normals(const PoseState& state, const std::vec
     const bool far = huberSigmas > 0 && s > huberSigmas;
     const double share = far ? huberSigmas / s : 1;
     sum.cost += far ? huberSigmas * (2 * s - huberSigmas) : squares;
-    Eigen::Matrix2d weight;
-    weight << p[0][0], p[1][0], p[0][1], p[1][1];
-    const Matrix26 half = share * weight * at->jacobian;
-    matrix.noalias() += at->jacobian.transpose() * half;
-    gradient.noalias() += half.transpose() * Eigen::Vector2d(at->residualPx.x, at->residualPx.y);
+    // Upper triangle of Jᵀ P J and Jᵀ P r, entry by entry: this loop is most of a resection's time.
+    double weightedU[6], weightedV[6];
+    for (int c = 0; c < 6; ++c) {
+      const double u = share * at->jacobian(0, c), v = share * at->jacobian(1, c);
+      weightedU[c] = p[0][0] * u + p[1][0] * v;
+      weightedV[c] = p[0][1] * u + p[1][1] * v;
+      gradient[c] += weightedU[c] * at->residualPx.x + weightedV[c] * at->residualPx.y;
+    }
+    for (int c = 0; c < 6; ++c)
+      for (int r = 0; r <= c; ++r) matrix(r, c) += weightedU[r] * at->jacobian(0, c) + weightedV[r] * at->jacobian(1, c);
   }
+  matrix.triangularView<Eigen::StrictlyLower>() = matrix.transpose();
   if (!std::isfinite(sum.cost)) sum.cost = std::numeric_limits<double>::infinity();
   for (const int r : m_free) {
     sum.gradient[r] = gradient[r];

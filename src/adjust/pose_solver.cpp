@@ -125,8 +125,7 @@ Consensus findConsensus(const PoseProblem& problem, const std::vector<int>& usab
   const std::vector<int> near = within(problem, found.state, usable, limit);
   if (static_cast<int>(near.size()) == n) return found;
   if (n >= 50 && 10 * static_cast<int>(near.size()) >= 9 * n) {
-    found.state = settled(problem, found.state, usable, limit);
-    found.inliers = within(problem, found.state, usable, limit);
+    found.inliers = near;
     return found;
   }
 

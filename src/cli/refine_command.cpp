@@ -1,11 +1,14 @@
 // SPDX-FileCopyrightText: 2026 the Alidade authors
 // SPDX-License-Identifier: BSD-3-Clause
 
+#include <algorithm>
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "app/jobs.h"
+#include "app/refine_network.h"
 #include "cli/command.h"
-#include "cli/project_input.h"
 #include "io/project_store.h"
 
 namespace alidade::cli {
@@ -15,10 +18,25 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct Arguments {
-  std::string project, frame, observations, lock;
+  std::string project, frame, observations, lock, free;
   std::vector<std::string> at;
   bool dryRun = false;
 };
+
+/// What is free beyond the poses.
+Result<void> applyFree(const std::string& list, NetworkFreedom& freedom) {
+  std::size_t start = 0;
+  while (!list.empty() && start <= list.size()) {
+    const auto comma = std::min(list.find(',', start), list.size());
+    const std::string name = list.substr(start, comma - start);
+    if (name == "focal") freedom.focal = true;
+    else if (name == "principal-point") freedom.principalPoint = true;
+    else if (name == "distortion") freedom.distortion = true;
+    else return fail("'" + name + "' cannot be freed", "--free", "Free focal, principal-point or distortion; poses are free unless --lock names them");
+    start = comma + 1;
+  }
+  return {};
+}
 
 Result<void> applyLocks(const std::string& list, ResectionOptions& options) {
   std::size_t start = 0;
@@ -48,13 +66,72 @@ Json vec(const glm::dvec3& v) {
   return {v.x, v.y, v.z};
 }
 
+Json ellipseOf(const PositionEllipse& ellipse) {
+  return {{"semi_major_m", ellipse.semiMajorM}, {"semi_minor_m", ellipse.semiMinorM}, {"azimuth_rad", ellipse.azimuthRad},
+          {"height_m", ellipse.heightM}};
+}
+
+/// NaN and infinity are no JSON numbers.
+Json finite(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json expectedOf(const std::vector<ExpectedError>& all) {
+  if (all.empty()) return nullptr;
+  if (all.size() == 1) return finite(all[0].millimetres);
+  Json list = Json::array();
+  for (const ExpectedError& error : all) list.push_back(finite(error.millimetres));
+  return list;
+}
+
+Json jsonOf(const NetworkRefinement& refinement, const NetworkSummary& summary, bool dryRun) {
+  const Network& network = refinement.network;
+  Json json = {{"converged", summary.converged}, {"reason", summary.reason}, {"iterations", summary.iterations},
+               {"initial_cost", summary.initialCost}, {"final_cost", summary.finalCost}, {"sigma0", summary.sigma0},
+               {"redundancy", summary.redundancy}};
+  Json frames = Json::array(), groups = Json::array(), residuals = Json::array(), outliers = Json::array(), checks = Json::array();
+  for (std::size_t i = 0; i < network.frames.size(); ++i) {
+    const AdjustedPose& pose = summary.poses[network.frames[i].pose];
+    const glm::dquat& q = pose.bodyFromWorld.rotation;
+    frames.push_back({{"name", network.frames[i].name}, {"camera_centre_m", vec(pose.bodyFromWorld.centre())},
+                      {"camera_from_world_wxyz", {q.w, q.x, q.y, q.z}}, {"position_std_m", vec(pose.positionStdM)},
+                      {"rotation_std_rad", vec(pose.rotationStdRad)}, {"ellipse_95", ellipseOf(pose.ellipse)},
+                      {"rms_px", pose.rmsPx}, {"observations", pose.observations}, {"outliers", pose.outliers}});
+  }
+  for (const ResidualGroup& g : summary.groups)
+    groups.push_back({{"kind", residualKindName(g.kind)}, {"held_out", g.heldOut}, {"count", g.count}, {"outliers", g.outliers},
+                      {"rms_px", finite(g.rmsPx)}, {"rms_sigmas", finite(g.rmsSigmas)}});
+  for (const NetworkResidual& r : summary.residuals) {
+    if (r.outlier) outliers.push_back(r.name);
+    residuals.push_back({{"name", r.name}, {"frame", r.frame < 0 ? Json(nullptr) : Json(network.frames[r.frame].name)},
+                         {"kind", residualKindName(r.kind)}, {"du_px", finite(r.residualPx.x)}, {"dv_px", finite(r.residualPx.y)},
+                         {"sigmas", finite(r.sigmas)}, {"outlier", r.outlier}, {"held_out", r.heldOut}});
+  }
+  for (const CheckPoint& c : summary.checkPoints) checks.push_back({{"name", c.name}, {"difference_m", vec(c.differenceM)}});
+  Json cameras = Json::array();
+  for (std::size_t i = 0; i < summary.cameras.size(); ++i)
+    cameras.push_back({{"name", network.cameras[i].name}, {"model", cameraModelName(summary.cameras[i].model)},
+                       {"parameters", summary.cameras[i].parameters()}});
+  json["frames"] = std::move(frames);
+  json["cameras"] = std::move(cameras);
+  json["expected_error_mm"] = expectedOf(summary.expected);
+  json["groups"] = std::move(groups);
+  json["check_points"] = std::move(checks);
+  json["correlations"] = summary.correlations;
+  json["warnings"] = summary.warnings;
+  json["outliers"] = std::move(outliers);
+  json["residuals"] = std::move(residuals);
+  json["saved"] = summary.converged && !dryRun;
+  return json;
+}
+
 Json jsonOf(const ResectionSummary& summary, bool dryRun) {
   Json json = {{"converged", summary.converged}, {"reason", summary.reason}, {"iterations", summary.iterations},
                {"rms_px", summary.rmsPx}, {"sigma0", summary.sigma0}, {"position_std_m", vec(summary.positionStdM)},
                {"rotation_std_rad", vec(summary.rotationStdRad)}};
-  Json expected = Json::array();
-  for (const ExpectedError& error : summary.expected) expected.push_back(error.millimetres);
-  json["expected_error_mm"] = summary.expected.size() == 1 ? expected[0] : (expected.empty() ? Json(nullptr) : expected);
+  json["ellipse_95"] = ellipseOf(summary.ellipse);
+  json["correlations"] = summary.correlations;
+  json["expected_error_mm"] = expectedOf(summary.expected);
   Json outliers = Json::array(), residuals = Json::array();
   for (const ResectionResidual& r : summary.residuals) {
     if (r.outlier) outliers.push_back(r.name);
@@ -70,42 +147,95 @@ Json jsonOf(const ResectionSummary& summary, bool dryRun) {
   return json;
 }
 
+Answer answerOf(Json json, std::string text, bool converged) {
+  Answer answer;
+  answer.json = std::move(json);
+  answer.text = std::move(text);
+  if (!answer.text.ends_with('\n')) answer.text += '\n';
+  answer.failed = !converged;
+  return answer;
+}
+
+/// One frame, known points and nothing else: a resection.
+bool isResection(const std::vector<ObservationRow>& rows, const std::string& frame, const NetworkFreedom& freedom) {
+  if (frame.empty() || freedom.focal || freedom.principalPoint || freedom.distortion) return false;
+  return std::all_of(rows.begin(), rows.end(), [&](const ObservationRow& row) {
+    return (row.kind == ObservationKind::Control || row.kind == ObservationKind::Scan) && !row.heldOut &&
+           (row.frame.empty() || row.frame == frame);
+  });
+}
+
+Result<Answer> runResection(Project& project, const Arguments& arguments, const std::vector<ObservationRow>& rows,
+                            const ResectionOptions& options) {
+  const auto frame = project.frameByNameOrIndex(arguments.frame);
+  if (!frame) return fail(frame.error());
+  // Duplicates, two positions of one name, a picture of another size: the network's rules hold for one frame as well.
+  if (const auto sensible = networkOf(project, arguments.frame, rows, {}); !sensible) return fail(sensible.error());
+  std::vector<ResectionObservation> observations;
+  for (const ObservationRow& row : rows) observations.push_back({row.pixel, *row.world, row.sigmaPx, row.name, row.sigmaM});
+  auto summary = refineFrame(project, *frame, observations, options, arguments.dryRun);
+  if (!summary) return fail(summary.error());
+  if (summary->converged && !arguments.dryRun)
+    if (auto saved = saveProject(project, arguments.project); !saved) return fail(saved.error());
+  return answerOf(jsonOf(*summary, arguments.dryRun), summary->report(), summary->converged);
+}
+
+Result<Answer> runNetwork(Project& project, const Arguments& arguments, const std::vector<ObservationRow>& rows,
+                          const NetworkFreedom& freedom, const std::vector<glm::dvec3>& at, const Progress& progress) {
+  const auto refinement = networkOf(project, arguments.frame, rows, freedom);
+  if (!refinement) return fail(refinement.error());
+  NetworkOptions options;
+  for (const glm::dvec3& point : at)
+    for (std::size_t f = 0; f < refinement->network.frames.size(); ++f) options.at.push_back({static_cast<int>(f), point});
+  const auto summary = refineNetwork(project, *refinement, options, arguments.dryRun, progress);
+  if (!summary) return fail(summary.error());
+  if (summary->converged && !arguments.dryRun)
+    if (auto saved = saveProject(project, arguments.project); !saved) return fail(saved.error());
+  return answerOf(jsonOf(*refinement, *summary, arguments.dryRun), summary->report(refinement->network), summary->converged);
+}
+
 Result<Answer> run(const Arguments& arguments, const Progress& progress) {
   ResectionOptions options;
+  NetworkFreedom freedom;
   if (auto done = applyLocks(arguments.lock, options); !done) return fail(done.error());
+  if (auto done = applyFree(arguments.free, freedom); !done) return fail(done.error());
+  freedom.lockPosition = options.lockPosition, freedom.lockAttitude = options.lockAttitude;
   for (const std::string& text : arguments.at) {
     auto point = parsePoint(text);
     if (!point) return fail(point.error());
     options.at.push_back(*point);
   }
-  auto open = openProject(arguments.project, arguments.frame, false, progress);
-  if (!open) return fail(open.error());
-  auto observations = readObservations(arguments.observations);
-  if (!observations) return fail(observations.error());
-  auto summary = refineFrame(open->project, open->frame, *observations, options, arguments.dryRun);
-  if (!summary) return fail(summary.error());
-  if (summary->converged && !arguments.dryRun)
-    if (auto saved = saveProject(open->project, arguments.project); !saved) return fail(saved.error());
-
-  Answer answer;
-  answer.json = jsonOf(*summary, arguments.dryRun);
-  answer.text = summary->report();
-  if (!answer.text.ends_with('\n')) answer.text += '\n';
-  answer.failed = !summary->converged;
-  return answer;
+  auto project = loadProject(arguments.project);
+  if (!project) return fail(project.error());
+  auto rows = arguments.observations.empty() ? Result<std::vector<ObservationRow>>(observationRowsOf(*project))
+                                             : readObservationRows(arguments.observations);
+  if (!rows) return fail(rows.error());
+  if (arguments.observations.empty() && !arguments.frame.empty()) {
+    const auto frame = project->frameByNameOrIndex(arguments.frame);
+    if (!frame) return fail(frame.error());
+    std::erase_if(*rows, [&](const ObservationRow& row) { return row.frame != project->findFrame(*frame)->name; });
+    for (ObservationRow& row : *rows) row.frame.clear();
+  }
+  if (rows->empty()) return fail("The project keeps no observation to refine from", arguments.project, "Give --observations FILE");
+  if (isResection(*rows, arguments.frame, freedom)) return runResection(*project, arguments, *rows, options);
+  return runNetwork(*project, arguments, *rows, freedom, options.at, progress);
 }
 
 }  // namespace
 
 void addRefine(Verbs& verbs) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* command = verbs.add("refine", "Refine a frame's pose from observations of known points",
+  CLI::App* command = verbs.add("refine", "Refine the poses of one or several frames from what was observed in them",
                                 [arguments](const Progress& progress) { return run(*arguments, progress); });
   command->add_option("project", arguments->project, "Project file")->required();
-  command->add_option("--frame", arguments->frame, "Name, or index from 0")->required();
-  command->add_option("--observations", arguments->observations, "CSV: u,v,e,n,h[,sigma_px[,name]]")->required();
+  command->add_option("--frame", arguments->frame, "Name, or index from 0, of the frame of rows that name none");
+  command->add_option("--observations", arguments->observations,
+                      "CSV: u,v,e,n,h[,sigma_px][,name][,frame][,kind][,use][,sigma_m][,e2,n2,h2][,depth_m]; "
+                      "without it, those that the project keeps");
   command->add_option("--lock", arguments->lock, "Of position,attitude,x,y,z")
       ->check(checkedBy([](const std::string& list) { ResectionOptions ignored; return applyLocks(list, ignored); }, "LIST"));
+  command->add_option("--free", arguments->free, "Of focal,principal-point,distortion, beside the poses")
+      ->check(checkedBy([](const std::string& list) { NetworkFreedom ignored; return applyFree(list, ignored); }, "LIST"));
   command->add_option("--at", arguments->at, "E,N,H where the expected error is wanted")
       ->check(checkedBy(parsePoint, "POINT"));
   command->add_flag("--dry-run", arguments->dryRun, "Report only; leave the project as it is");

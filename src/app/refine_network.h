@@ -1,0 +1,42 @@
+// SPDX-FileCopyrightText: 2026 the Alidade authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "adjust/network.h"
+#include "app/observation_rows.h"
+#include "survey/project.h"
+
+namespace alidade {
+
+/// What may move of every frame and camera that is refined.
+struct NetworkFreedom {
+  std::array<bool, 3> lockPosition{};
+  bool lockAttitude = false;
+  bool focal = false, principalPoint = false, distortion = false;
+};
+
+/// The frames that a network refines, and the network itself.
+struct NetworkRefinement {
+  std::vector<FrameId> frames;      ///< one a NetworkFrame
+  std::vector<CameraId> cameras;    ///< one a NetworkCamera
+  Network network;
+};
+
+/// Rows as a network over the project's frames; rows that name no frame belong to `frame`. Errors name the row: a frame
+/// that does not exist or has no camera, a point observed twice in a frame, two coordinates for one name, a picture whose
+/// size is not its calibration's.
+Result<NetworkRefinement> networkOf(const Project& project, const std::string& frame,
+                                    const std::vector<ObservationRow>& rows, const NetworkFreedom& freedom);
+
+/// The enabled observations that a project keeps, as rows.
+std::vector<ObservationRow> observationRowsOf(const Project& project);
+
+/// Adjusts, and gives the project the new poses (and calibrations that were free) where it converged and not `dryRun`.
+Result<NetworkSummary> refineNetwork(Project& project, const NetworkRefinement& refinement, const NetworkOptions& options,
+                                     bool dryRun, const Progress& progress);
+
+}  // namespace alidade

@@ -1,0 +1,97 @@
+// SPDX-FileCopyrightText: 2026 the Alidade authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include <filesystem>
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "app/refine_network.h"
+
+namespace alidade {
+namespace {
+
+using testing::HasSubstr;
+
+std::string write(const std::string& text) {
+  const auto path = std::filesystem::temp_directory_path() / "alidade_observation_rows_test.csv";
+  std::ofstream(path) << text;
+  return path.string();
+}
+
+constexpr const char* header = "u,v,e,n,h,name,frame,kind,use,sigma_m,e2,n2,h2,depth_m\n";
+
+TEST(ObservationRows, EveryKindIsRead) {
+  const auto rows = readObservationRows(write(std::string(header) + "10,20,1,2,3,C1,A,control,1,0.01\n11,21,4,5,6,S1,A,scan\n"
+                                              "12,22,,,,T1,A,tie\n13,23,,,,T1,B,tie,check\n14,24,1,2,3,E1,A,edge,1,,4,5,6\n"
+                                              ",,,,,T1,A,depth,1,0.02,,,,7.5\n,,1,2,3,T1,,surface,1,,0,0,1\n,,9,9,9,,A,position,1,0.05\n"
+                                              "99,99,9,9,9,off,A,control,0\n"));
+  ASSERT_TRUE(rows) << rows.error().text();
+  ASSERT_EQ(rows->size(), 8u) << "use 0 is skipped";
+  EXPECT_DOUBLE_EQ((*rows)[0].sigmaM, 0.01);
+  EXPECT_EQ((*rows)[1].kind, ObservationKind::Scan);
+  EXPECT_DOUBLE_EQ((*rows)[1].sigmaM, 0.003);
+  EXPECT_FALSE((*rows)[2].world);
+  EXPECT_TRUE((*rows)[3].heldOut);
+  EXPECT_DOUBLE_EQ((*rows)[4].second->z, 6);
+  EXPECT_DOUBLE_EQ((*rows)[5].depthM, 7.5);
+  EXPECT_EQ((*rows)[6].kind, ObservationKind::Surface);
+  EXPECT_EQ((*rows)[7].kind, ObservationKind::Position);
+}
+
+TEST(ObservationRows, BadRowsNameTheirLine) {
+  for (const auto& [row, text] : {std::pair{"1,2,3,4,5,P,A,star", "no kind of observation"}, {"1,2,3,4,5,P,A,control,maybe", "use is"},
+                                  {"1,2,3,4,5,P,A,edge", "e2, n2 and h2"}, {"1,2,,,,,A,tie", "no name"},
+                                  {"1,2,3,4,,P,A,control", "e, n, h must be finite"}, {"1,2,3,4,5,P,A,scan,1,-1", "sigma_m"},
+                                  {",,,,,P,A,depth", "depth_m"}, {"nan,2,3,4,5,P,A,scan", "u, v must be finite"}}) {
+    const auto rows = readObservationRows(write(std::string(header) + row + "\n"));
+    ASSERT_FALSE(rows) << row;
+    EXPECT_THAT(rows.error().text(), HasSubstr(text));
+    EXPECT_THAT(rows.error().where, HasSubstr("line 2"));
+  }
+}
+
+Project twoFrames() {
+  Project project;
+  project.cameras.push_back({CameraId{1}, "camera", Camera(Intrinsics::fromParameters(CameraModel::Pinhole, 640, 480, {500, 500, 320, 240}).value())});
+  for (int i = 0; i < 2; ++i) {
+    Frame frame;
+    frame.id = FrameId{i + 1};
+    frame.name = i == 0 ? "A.png" : "B.png";
+    frame.camera = CameraId{1};
+    frame.cameraFromWorld = RigidTransform{};
+    project.frames.push_back(frame);
+  }
+  return project;
+}
+
+TEST(ObservationRows, MakeOneNetworkOverTheFramesTheyName) {
+  const auto rows = readObservationRows(write(std::string(header) + "10,20,1,2,3,C1,A,control\n12,22,,,,T1,A,tie\n13,23,,,,T1,B,tie\n,,1,2,3,T1,,surface,1,,0,0,1\n"));
+  ASSERT_TRUE(rows);
+  const auto made = networkOf(twoFrames(), "", *rows, {});
+  ASSERT_TRUE(made) << made.error().text();
+  EXPECT_EQ(made->network.frames.size(), 2u);
+  EXPECT_EQ(made->network.points.size(), 2u);
+  EXPECT_EQ(made->network.observations.size(), 3u);
+  EXPECT_TRUE(made->network.points[1].surface);
+}
+
+TEST(ObservationRows, WhatContradictsItselfIsRefused) {
+  const auto expectRefused = [](const std::string& text, const std::string& reason) {
+    const auto rows = readObservationRows(write(header + text));
+    ASSERT_TRUE(rows) << rows.error().text();
+    const auto made = networkOf(twoFrames(), "", *rows, {});
+    ASSERT_FALSE(made) << text;
+    EXPECT_THAT(made.error().text(), HasSubstr(reason));
+  };
+  expectRefused("1,2,3,4,5,P,A\n1,2,3,4,5,P,A\n", "observed twice");
+  expectRefused("1,2,3,4,5,P,A\n1,2,3,4,6,P,B\n", "two positions");
+  expectRefused("1,2,3,4,5,P,A\n1,2,,,,P,B,tie\n", "known point in one row");
+  expectRefused("1,2,3,4,5,P\n", "names no frame");
+  expectRefused("1,2,3,4,5,P,C\n", "C");
+  expectRefused(",,,,,Q,A,depth,1,,,,,3\n", "No row above");
+}
+
+}  // namespace
+}  // namespace alidade
