@@ -64,6 +64,8 @@ const std::vector<ActionSpec>& actionTable() {
        "Shows the picture as the camera saw it (hold R)", true},
       {C::ShowMessages, "showMessages", "Messages", "messages", "Ctrl+M",
        "Shows what happened, with details to copy", true},
+      {C::ShowPoints, "showPoints", "Points", "scan", "Ctrl+Shift+P",
+       "Shows how the scan's points are coloured, filtered and cut"},
       {C::ThemeDark, "themeDark", "Dark", "", "", "Neutral dark grey, so that the picture is judged fairly",
        true},
       {C::ThemeLight, "themeLight", "Light", "", "", "Light surroundings", true},

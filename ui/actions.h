@@ -49,6 +49,7 @@ enum class Command {
   Labels,
   RawPicture,
   ShowMessages,
+  ShowPoints,
   ThemeDark,
   ThemeLight,
   ThemeContrast,

@@ -27,6 +27,7 @@
 #include "ui/job_strip.h"
 #include "ui/message_panel.h"
 #include "ui/overlay_view.h"
+#include "ui/points_panel.h"
 #include "ui/project_panel.h"
 #include "ui/properties_panel.h"
 #include "ui/resection_panel.h"
@@ -40,7 +41,7 @@ namespace alidade {
 
 namespace {
 
-constexpr int kLayoutVersion = 1;
+constexpr int kLayoutVersion = 2;
 
 }  // namespace
 
@@ -177,6 +178,7 @@ void MainWindow::buildDocks() {
                           Qt::RightDockWidgetArea);
   m_displayDock = dock(tr("Display"), QStringLiteral("displayDock"), new DisplayPanel(*m_session),
                        Qt::RightDockWidgetArea);
+  m_pointsDock = dock(tr("Points"), QStringLiteral("pointsDock"), new PointsPanel(*m_session), Qt::RightDockWidgetArea);
   m_resectionDock =
       dock(tr("Refine pose"), QStringLiteral("resectionDock"), m_resectionPanel, Qt::RightDockWidgetArea);
   m_messageDock = dock(tr("Messages"), QStringLiteral("messageDock"), new MessagePanel(m_session->messages()),
@@ -212,8 +214,10 @@ void MainWindow::defaultLayout() {
   addDockWidget(Qt::RightDockWidgetArea, m_propertiesDock);
   splitDockWidget(m_propertiesDock, m_displayDock, Qt::Vertical);
   tabifyDockWidget(m_propertiesDock, m_resectionDock);
+  tabifyDockWidget(m_displayDock, m_pointsDock);
   addDockWidget(Qt::BottomDockWidgetArea, m_messageDock);
   m_propertiesDock->raise();
+  m_displayDock->raise();
   m_resectionDock->hide();
   m_messageDock->hide();
   resizeDocks({m_projectDock, m_propertiesDock}, {270, 300}, Qt::Horizontal);
@@ -267,7 +271,7 @@ void MainWindow::refreshTitle() {
   setWindowModified(m_session->modified());
 }
 
-bool MainWindow::mayClose() {
+bool MainWindow::mayClose(const std::function<void()>& goOn) {
   // Slider positions alone are not worth a question.
   const bool worthAsking = m_session->hasProject() && m_session->workUnsaved();
   if (!worthAsking) return true;
@@ -277,14 +281,20 @@ bool MainWindow::mayClose() {
   box.setDefaultButton(QMessageBox::Save);
   const int answer = box.exec();
   if (answer == QMessageBox::Save) {
+    // It goes on once all is saved: a save that fails must not lose the work.
+    m_afterSave = goOn;
     m_files->save();
-    return false;  // closing goes on by hand once it is saved: a failed save must not lose the work
+    return false;
   }
   return answer == QMessageBox::Discard;
 }
 
+void MainWindow::closeThen(const std::function<void()>& goOn) {
+  if (mayClose(goOn)) goOn();
+}
+
 void MainWindow::closeEvent(QCloseEvent* event) {
-  if (!mayClose()) {
+  if (!mayClose([this] { close(); })) {
     event->ignore();
     return;
   }

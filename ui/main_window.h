@@ -93,9 +93,12 @@ class MainWindow : public QMainWindow {
   void isolateStorey();
   void showKeys();
   void chooseFiles();
+  void chooseProject();
   void chooseSavePath();
   void openExport();
-  bool mayClose();
+  /// False where there are unsaved changes to ask about first; `goOn` runs once they are saved.
+  bool mayClose(const std::function<void()>& goOn);
+  void closeThen(const std::function<void()>& goOn);
   void saveLayout();
   void defaultLayout();
 
@@ -121,10 +124,11 @@ class MainWindow : public QMainWindow {
   QToolBar* m_toolBar;
   QWidget* m_timeline;
   QList<QDockWidget*> m_docks;
-  QDockWidget *m_projectDock, *m_propertiesDock, *m_displayDock, *m_resectionDock, *m_messageDock;
+  QDockWidget *m_projectDock, *m_propertiesDock, *m_displayDock, *m_pointsDock, *m_resectionDock, *m_messageDock;
   QMenu* m_recentMenu;
   std::shared_ptr<MeasuredDistances> m_measurements;
   bool m_workspaceShown = false;
+  std::function<void()> m_afterSave;  ///< what the unsaved changes held up
 };
 
 }  // namespace alidade

@@ -87,6 +87,7 @@ void MainWindow::buildMenus() {
   for (QDockWidget* dock : m_docks)
     if (dock != m_messageDock) panels->addAction(dock->toggleViewAction());
   panels->addAction(a[C::ShowMessages]);
+  panels->addAction(a[C::ShowPoints]);
   panels->addSeparator();
   panels->addAction(a[C::ResetLayout]);
   QMenu* theme = view->addMenu(icon(QStringLiteral("theme")), tr("Theme"));
@@ -103,30 +104,25 @@ void MainWindow::buildMenus() {
 
 void MainWindow::connectFileActions() {
   const Actions& a = *m_actions;
-  connect(a[C::NewProject], &QAction::triggered, this, [this] {
-    if (mayClose()) m_files->newEmpty();
-  });
-  connect(a[C::OpenProject], &QAction::triggered, this, [this] {
-    if (!mayClose()) return;
-    const QStringList paths = QFileDialog::getOpenFileNames(
-        this, tr("Open"), QSettings().value(QStringLiteral("openFolder")).toString(),
-        tr("Projects (*.alidade);;All files (*)"));
-    if (paths.isEmpty()) return;
-    QSettings().setValue(QStringLiteral("openFolder"), QFileInfo(paths.front()).absolutePath());
-    m_files->openAny(paths);
-  });
+  connect(a[C::NewProject], &QAction::triggered, this,
+          [this] { closeThen([this] { m_files->newEmpty(); }); });
+  connect(a[C::OpenProject], &QAction::triggered, this, [this] { closeThen([this] { chooseProject(); }); });
   connect(a[C::AddFiles], &QAction::triggered, this, &MainWindow::chooseFiles);
   connect(m_files, &ProjectFiles::wantsFiles, this, &MainWindow::chooseFiles);
-  connect(a[C::OpenSample], &QAction::triggered, this, [this] {
-    if (mayClose()) m_files->openSample();
-  });
+  connect(a[C::OpenSample], &QAction::triggered, this,
+          [this] { closeThen([this] { m_files->openSample(); }); });
   connect(a[C::Save], &QAction::triggered, m_files, &ProjectFiles::save);
   connect(a[C::SaveAs], &QAction::triggered, this, &MainWindow::chooseSavePath);
   connect(m_files, &ProjectFiles::needsPath, this, &MainWindow::chooseSavePath);
   connect(a[C::CloseProject], &QAction::triggered, this, [this] {
-    if (!mayClose()) return;
-    showWorkspace(false);
-    m_session->closeProject();
+    closeThen([this] {
+      showWorkspace(false);
+      m_session->closeProject();
+    });
+  });
+  connect(m_files, &ProjectFiles::saveFinished, this, [this](bool saved) {
+    const auto goOn = std::exchange(m_afterSave, nullptr);
+    if (saved && goOn) goOn();
   });
   connect(a[C::ExportPicture], &QAction::triggered, this, &MainWindow::openExport);
   connect(a[C::Quit], &QAction::triggered, this, &QWidget::close);
@@ -140,7 +136,7 @@ void MainWindow::refillRecentMenu() {
     QAction* action = m_recentMenu->addAction(QFileInfo(path).completeBaseName());
     action->setToolTip(path);
     connect(action, &QAction::triggered, this, [this, path] {
-      if (mayClose()) m_files->open(path);
+      closeThen([this, path] { m_files->open(path); });
     });
   }
   m_recentMenu->setEnabled(!m_recentMenu->isEmpty());
@@ -155,13 +151,23 @@ void MainWindow::chooseFiles() {
   m_files->add(paths);
 }
 
+void MainWindow::chooseProject() {
+  const QStringList paths = QFileDialog::getOpenFileNames(
+      this, tr("Open"), QSettings().value(QStringLiteral("openFolder")).toString(),
+      tr("Projects (*.alidade);;All files (*)"));
+  if (paths.isEmpty()) return;
+  QSettings().setValue(QStringLiteral("openFolder"), QFileInfo(paths.front()).absolutePath());
+  m_files->openAny(paths);
+}
+
 void MainWindow::chooseSavePath() {
   const QString start = QFileInfo(QSettings().value(QStringLiteral("openFolder")).toString(),
                                   text(m_session->project()->name) + QStringLiteral(".alidade"))
                             .filePath();
   const QString path =
       QFileDialog::getSaveFileName(this, tr("Save project"), start, tr("Projects (*.alidade)"));
-  if (!path.isEmpty()) m_files->saveAs(path);
+  if (path.isEmpty()) m_afterSave = nullptr;
+  else m_files->saveAs(path);
 }
 
 void MainWindow::openExport() {
@@ -298,6 +304,10 @@ void MainWindow::connectViewActions() {
   connect(a[C::ShowMessages], &QAction::toggled, m_messageDock, &QWidget::setVisible);
   connect(m_messageDock, &QDockWidget::visibilityChanged, this, [this] {
     (*m_actions)[C::ShowMessages]->setChecked(m_messageDock->toggleViewAction()->isChecked());
+  });
+  connect(a[C::ShowPoints], &QAction::triggered, this, [this] {
+    m_pointsDock->show();
+    m_pointsDock->raise();
   });
   const std::pair<Command, Theme> themes[] = {
       {C::ThemeDark, Theme::Dark}, {C::ThemeLight, Theme::Light}, {C::ThemeContrast, Theme::HighContrast}};

@@ -26,7 +26,7 @@ struct OpenOutcome {
 /// Only the sources that are not loaded yet.
 Project withoutLoaded(const Project& project, const LoadedData& data) {
   Project rest = project;
-  std::erase_if(rest.scans, [&](const Scan& scan) { return data.clouds.contains(scan.id); });
+  std::erase_if(rest.scans, [&](const Scan& scan) { return data.scans.contains(scan.id); });
   std::erase_if(rest.designs, [&](const Design& design) { return data.designs.contains(design.id); });
   return rest;
 }
@@ -148,7 +148,7 @@ void ProjectFiles::load(std::shared_ptr<const Project> project, bool onlyNew) {
           m_session.messages().warn(text(warning.what), text(warning.where));
         for (const Error& problem : outcome->problems) m_session.messages().error(problem);
         LoadedData all = *m_session.data();
-        for (auto& [id, cloud] : outcome->data.clouds) all.clouds[id] = cloud;
+        for (auto& [id, scan] : outcome->data.scans) all.scans[id] = scan;
         for (auto& [id, design] : outcome->data.designs) all.designs[id] = design;
         m_session.setData(std::move(all));
       });
@@ -181,11 +181,13 @@ void ProjectFiles::saveAs(const QString& wanted) {
       [this, path, state](Result<void> saved) {
         if (!saved) {
           m_session.messages().error(saved.error(), tr("saving"));
+          emit saveFinished(false);
           return;
         }
         if (m_session.project().get() == state) m_session.markSaved(path.toStdString());
         remember(path);
         m_session.messages().info(tr("Saved %1").arg(path));
+        emit saveFinished(true);
       });
 }
 

@@ -37,6 +37,7 @@ class ProjectFiles : public QObject {
   void opened(const QString& path);
   void recentChanged();
   void needsPath();   ///< save() without a path yet
+  void saveFinished(bool saved);
   void wantsFiles();  ///< the next step that a note offers: choose more files
 
  private:

@@ -117,7 +117,7 @@ void RenderLoop::render(OverlayRenderer& renderer, const RenderRequest& request)
   if (!request.residuals) description->residuals.clear();
   if (request.rawOnly) {
     description->designs.clear();
-    description->clouds.clear();
+    description->scans.clear();
     description->stakePoints.clear();
     description->annotations.clear();
     description->residuals.clear();
@@ -130,8 +130,7 @@ void RenderLoop::render(OverlayRenderer& renderer, const RenderRequest& request)
     return;
   }
   result->frame.poseQuality = frame->quality;
-  for (const auto& cloud : description->clouds)
-    result->frame.scanSpacingM = std::max(result->frame.scanSpacingM, cloud->medianSpacing());
+  result->frame.scanSpacingM = scanSpacing(*description);
   result->frame.description = std::move(*description);
   result->frame.picture = std::move(*rendered);
   emit finished(result);

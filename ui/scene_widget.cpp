@@ -85,14 +85,15 @@ void SceneWidget::updateAll() {
   if (!m_shown) return;
   m_stale = false;
   const LoadedData& data = *m_session.data();
-  std::vector<std::shared_ptr<const PointStore>> clouds;
-  for (const auto& [id, cloud] : data.clouds) clouds.push_back(cloud);
-  m_view->setClouds(clouds, m_session.display().density, m_session.display().pointSize);
+  std::vector<ScanPoints> clouds;
+  for (const auto& [id, parts] : data.scans)
+    for (const ScanLayer& part : parts) clouds.push_back(part.points);
+  m_view->setClouds(clouds, m_session.display().density, m_session.display().pointSize, m_session.display().points);
   m_view->setStakePoints(m_session.project()->stakePoints);
   updateDesigns();
   updateFrames();
   updateSelection();
-  if (m_framedData != &data && !(data.clouds.empty() && data.designs.empty())) {
+  if (m_framedData != &data && !(data.scans.empty() && data.designs.empty())) {
     m_framedData = &data;
     m_fitDue = true;
   }
@@ -128,7 +129,7 @@ void SceneWidget::updateFrames() {
 
 void SceneWidget::updateCloudDisplay() {
   if (!m_shown) return;
-  m_view->setCloudDisplay(m_session.display().density, m_session.display().pointSize);
+  m_view->setCloudDisplay(m_session.display().density, m_session.display().pointSize, m_session.display().points);
   refresh();
 }
 

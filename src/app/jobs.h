@@ -57,6 +57,8 @@ struct RenderedFrame {
   std::optional<PoseQuality> poseQuality;
   double scanSpacingM = 0;  ///< median over the clouds; 0 without a scan
 };
+/// Median spacing of the coarsest scan in the frame, metres; 0 without a scan.
+double scanSpacing(const FrameDescription& frame);
 Result<RenderedFrame> renderFrame(const Project& project, const LoadedData& data, FrameId frame, int width, int height,
                                   OverlayRenderer& renderer, PictureCache& pictures,
                                   const SelectionState& selection = {});

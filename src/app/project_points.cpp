@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "app/jobs.h"
+#include "overlay/scan_painter.h"
 
 namespace alidade {
 
@@ -27,10 +28,9 @@ Result<std::vector<ProjectedPoint>> projectPoints(const Project& project, const 
                                        static_cast<int>(std::lround(camera.height() * shrink)));
 
   DepthImage occlusion;
-  if (!description->clouds.empty() && project.display.depthPass) {
-    std::vector<SplatLayer> layers;
-    for (const auto& cloud : description->clouds) layers.push_back({cloud, selectAll(*cloud, small, description->cameraFromWorld)});
-    occlusion = occlusionDepth(layers, small, description->cameraFromWorld).depth;
+  if (!description->scans.empty() && project.display.depthPass) {
+    description->display.pointPass = false;
+    occlusion = ScanPainter().draw(*description, small).depth;
   }
 
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();

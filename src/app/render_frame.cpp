@@ -14,6 +14,12 @@
 
 namespace alidade {
 
+double scanSpacing(const FrameDescription& frame) {
+  double spacing = 0;
+  for (const ScanLayer& scan : frame.scans) spacing = std::max(spacing, scan.points.store->medianSpacing());
+  return spacing;
+}
+
 namespace {
 
 std::string poseText(const Frame& frame) {
@@ -110,8 +116,7 @@ Result<RenderedFrame> renderFrame(const Project& project, const LoadedData& data
   if (!picture) return fail(picture.error());
   rendered.picture = std::move(*picture);
   rendered.poseQuality = frame->quality;
-  for (const auto& cloud : rendered.description.clouds)
-    rendered.scanSpacingM = std::max(rendered.scanSpacingM, cloud->medianSpacing());
+  rendered.scanSpacingM = scanSpacing(rendered.description);
   rendered.title = titleOf(project, *frame, *project.findCamera(frame->camera), rendered);
   return rendered;
 }

@@ -7,33 +7,13 @@
 #include <deque>
 #include <unordered_set>
 
+#include "app/scan_loading.h"
 #include "io/picture_file.h"
 #include "io/reader_registry.h"
 
 namespace alidade {
 
 namespace {
-
-Result<std::shared_ptr<const PointStore>> loadScan(const Scan& scan, std::vector<ImportWarning>& warnings,
-                                                   const Progress& progress) {
-  const auto reader = ReaderRegistry::instance().findAs<ScanReader>(scan.source.path);
-  if (!reader) return fail(reader.error());
-  PointStoreBuilder builder;
-  auto read = (*reader)->read(
-      scan.source.path,
-      [&](const PointBatch& batch) {
-        builder.add(batch);
-        return !progress.cancelled();
-      },
-      progress.part(0.0, 0.6));
-  if (!read) return fail(read.error());
-  if (progress.cancelled()) return fail(cancelledError());
-  warnings.insert(warnings.end(), read->begin(), read->end());
-  if (builder.droppedCount() > 0)
-    warnings.push_back({std::to_string(builder.droppedCount()) + " points without finite coordinates were left out",
-                        scan.source.path});
-  return builder.build(progress.part(0.6, 1.0));
-}
 
 Result<std::shared_ptr<const DesignModel>> loadDesign(const Design& design, std::vector<ImportWarning>& warnings,
                                                       const Progress& progress) {
@@ -62,10 +42,10 @@ Result<LoadOutcome> loadData(const Project& project, const Progress& progress) {
     else outcome.problems.push_back(model.error());
   }
   for (const Scan& scan : project.scans) {
-    auto store = loadScan(scan, outcome.warnings, nextPart());
+    auto layers = loadScan(scan, static_cast<int>(&scan - project.scans.data()), outcome.warnings, nextPart());
     if (progress.cancelled()) return fail(cancelledError());
-    if (store) outcome.data.clouds[scan.id] = std::move(*store);
-    else outcome.problems.push_back(store.error());
+    if (layers) outcome.data.scans[scan.id] = std::move(*layers);
+    else outcome.problems.push_back(layers.error());
   }
   progress.report(1.0, "Loaded");
   return outcome;
@@ -175,8 +155,8 @@ Result<FrameDescription> describeFrame(const Project& project, const LoadedData&
   description.cameraFromWorld = *frame->cameraFromWorld;
   description.image = std::move(image);
   for (const Scan& scan : project.scans)
-    if (const auto it = data.clouds.find(scan.id); scan.visible && it != data.clouds.end())
-      description.clouds.push_back(it->second);
+    if (const auto it = data.scans.find(scan.id); scan.visible && it != data.scans.end())
+      description.scans.insert(description.scans.end(), it->second.begin(), it->second.end());
   for (const Design& design : project.designs)
     if (const auto it = data.designs.find(design.id); design.visible && it != data.designs.end())
       description.designs.push_back(layerOf(design, it->second, selection));

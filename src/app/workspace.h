@@ -11,7 +11,6 @@
 
 #include "base/error.h"
 #include "base/progress.h"
-#include "cloud/point_store.h"
 #include "overlay/frame_description.h"
 #include "plugin_api/reader.h"
 #include "survey/project.h"
@@ -20,7 +19,7 @@ namespace alidade {
 
 /// The heavy data behind a project, loaded: immutable, shared between threads, keyed by id.
 struct LoadedData {
-  std::map<ScanId, std::shared_ptr<const PointStore>> clouds;
+  std::map<ScanId, std::vector<ScanLayer>> scans;  ///< one entry a part of the scan's store
   std::map<DesignId, std::shared_ptr<const DesignModel>> designs;
 };
 

@@ -12,13 +12,20 @@
 
 #include "base/image.h"
 #include "camera/camera.h"
-#include "cloud/point_store.h"
+#include "cloud/point_styler.h"
 #include "geometry/rigid_transform.h"
+#include "raster/occluder_mesh.h"
 #include "survey/design_model.h"
 #include "survey/display_settings.h"
 #include "survey/project.h"
 
 namespace alidade {
+
+/// A scan: its points, and the surface that its scanners saw where it has their grid.
+struct ScanLayer {
+  ScanPoints points;
+  std::shared_ptr<const OccluderMesh> surface;  ///< tells what hides where the points are too sparse; null: none
+};
 
 /// A design with what of it is shown. `elementVisible` and `elementColour` are by element, or empty
 /// for "all" and "the element's own".
@@ -44,7 +51,7 @@ struct FrameDescription {
   std::shared_ptr<const ColourImage> image;  ///< raw picture; null draws a dark ground
   int width = 0, height = 0;  ///< of the result; 0: the raw picture's. The lens is scaled to it.
 
-  std::vector<std::shared_ptr<const PointStore>> clouds;
+  std::vector<ScanLayer> scans;
   std::vector<DesignLayer> designs;
   std::vector<StakePoint> stakePoints;
   std::vector<std::string> selectedStakePoints;  ///< by name

@@ -12,58 +12,14 @@
 #include "base/parallel.h"
 #include "overlay/annotation_painter.h"
 #include "overlay/picture_scaling.h"
+#include "overlay/scan_painter.h"
 #include "raster/occlusion.h"
-#include "raster/splatter.h"
 
 namespace alidade {
 
 namespace {
 
 constexpr int kLargestEdgePx = 16384;
-
-/// What the scans give for one frame.
-struct ScanPictures {
-  DepthImage depth;
-  ColourImage colour;
-  std::uint64_t total = 0, drawn = 0;
-};
-
-SelectionOptions selectionOptions(const DisplaySettings& display) {
-  SelectionOptions options;
-  options.density = display.density;
-  options.law = display.densityLaw;
-  options.pointsPerSquareMetre = display.pointsPerSquareMetre;
-  return options;
-}
-
-/// The density slider chooses which points are *shown*; what hides the design is judged with every
-/// point in view, so that thinning the display never changes what is visible.
-ScanPictures drawScans(const FrameDescription& frame, const Camera& camera) {
-  ScanPictures scans;
-  std::vector<SplatLayer> shown, occluders;
-  bool any = false;
-  for (const auto& store : frame.clouds) {
-    if (!store) continue;
-    scans.total += store->pointCount();
-    shown.push_back({store, select(*store, camera, frame.cameraFromWorld, selectionOptions(frame.display))});
-    scans.drawn += shown.back().selection.pointCount;
-    occluders.push_back({store, selectAll(*store, camera, frame.cameraFromWorld)});
-    any = any || occluders.back().selection.pointCount > 0;
-  }
-  if (!any) {
-    scans.depth = DepthImage(camera.width(), camera.height(), std::numeric_limits<float>::quiet_NaN());
-    return scans;
-  }
-  // Also with the depth pass off: the read-out under the cursor stands on it.
-  scans.depth = occlusionDepth(occluders, camera, frame.cameraFromWorld).depth;
-  if (!frame.display.pointPass) return scans;
-  SplatOptions splatting;
-  splatting.colour = true;
-  splatting.pointSize = frame.display.pointSize;
-  splatting.round = frame.display.roundPoints;
-  scans.colour = splat(shown, camera, frame.cameraFromWorld, splatting).colour;
-  return scans;
-}
 
 /// Pixels of each element by state, over bands of rows.
 void countElements(OverlayPicture& picture, const IdImage& hiddenElement, std::uint32_t elementCount) {
@@ -113,6 +69,7 @@ Result<void> checkFrame(const FrameDescription& frame, int width, int height) {
 
 struct OverlayRenderer::Impl {
   std::unique_ptr<OverlayDevice> device;
+  ScanPainter scans;
   // The camera image at the result's size; the source is held so that its address stays its name.
   std::shared_ptr<const ColourImage> source;
   ColourImage scaled;
@@ -156,7 +113,7 @@ Result<OverlayPicture> OverlayRenderer::render(const FrameDescription& frame) {
   const bool isScaled = width != frame.camera.width() || height != frame.camera.height();
   const Camera camera = isScaled ? frame.camera.scaledTo(width, height) : frame.camera;
 
-  ScanPictures scans = drawScans(frame, camera);
+  ScanPictures scans = m_impl->scans.draw(frame, camera);
   DrawList list = buildDrawList(frame, camera);
   list.image = m_impl->imageFor(frame, width, height);
   const bool hides = frame.display.depthPass && scans.drawn > 0;

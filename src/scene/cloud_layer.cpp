@@ -28,40 +28,72 @@ CloudLayer::CloudLayer(vtkRenderer* renderer) : m_coarse(makeActor({1, 1, 1}, fa
   renderer->AddActor(m_fine.actor);
 }
 
-void CloudLayer::addPoints(double fromShare, double toShare) {
+void CloudLayer::set(const std::vector<ScanPoints>& clouds) {
+  m_clouds.clear();
+  for (const ScanPoints& points : clouds) m_clouds.push_back({points, std::make_unique<PointStyler>(points)});
+}
+
+void CloudLayer::addPoints(double fromShare, double toShare, const PointStyle& style) {
   for (std::size_t cloud = 0; cloud < m_clouds.size(); ++cloud) {
-    const PointStore& store = *m_clouds[cloud];
-    const double fromLevel = store.levelOfShare(fromShare), toLevel = store.levelOfShare(toShare);
-    for (std::uint32_t n = 0; n < store.nodes().size(); ++n) {
-      const CloudNode& node = store.nodes()[n];
-      const std::uint32_t from = fromShare > 0 ? store.countBelow(n, fromLevel) : 0, to = store.countBelow(n, toLevel);
-      if (to <= from) continue;
-      m_ranges.push_back({m_points.size(), cloud, node.first + from});
+    const PointStore& store = *m_clouds[cloud].points.store;
+    const auto prefixes = [&](double share) {
+      Selection selection;
+      const double level = store.levelOfShare(share);
+      for (std::uint32_t n = 0; n < store.nodes().size(); ++n)
+        if (const std::uint32_t count = share > 0 ? store.countBelow(n, level) : 0; count > 0)
+          selection.ranges.push_back({n, store.nodes()[n].first, count, 0.0});
+      m_clouds[cloud].styler->apply(style, PointStyler::Part::ColourAndFilter, m_origin, selection);
+      return selection;
+    };
+    // The longer prefixes first: what is styled for them serves the shorter ones and stays where it is.
+    const Selection all = prefixes(toShare), before = prefixes(fromShare);
+    auto skipped = before.ranges.begin();
+    for (const SelectedRange& range : all.ranges) {
+      while (skipped != before.ranges.end() && skipped->node < range.node) ++skipped;
+      const std::uint32_t from = skipped != before.ranges.end() && skipped->node == range.node ? skipped->count : 0;
+      if (range.count <= from) continue;
+      const CloudNode& node = store.nodes()[range.node];
+      const DisplayPoint* points = range.styled ? range.styled : store.points().data() + range.first;
+      m_ranges.push_back({m_points.size(), cloud, range.node});
       const glm::dvec3 corner = node.origin - m_origin;
-      for (const DisplayPoint& point : store.points().subspan(node.first + from, to - from)) {
-        m_points.emplace_back(corner + node.step * glm::dvec3(point.x, point.y, point.z));
-        m_colours.push_back(colourOf(point.rgb565));
+      for (const DisplayPoint* point = points + from; point != points + range.count; ++point) {
+        m_points.emplace_back(corner + node.step * glm::dvec3(point->x, point->y, point->z));
+        m_colours.push_back(colourOf(point->rgb565));
       }
     }
   }
 }
 
-void CloudLayer::build(const glm::dvec3& origin, double density, std::uint64_t budget) {
+/// The source's own position of a drawn point: of the first in its node at the same place.
+glm::dvec3 CloudLayer::positionOf(std::size_t drawn) const {
+  const auto range = std::prev(std::upper_bound(
+      m_ranges.begin(), m_ranges.end(), drawn, [](std::size_t d, const Range& r) { return d < r.firstDrawn; }));
+  const PointStore& store = *m_clouds[range->cloud].points.store;
+  const CloudNode& node = store.nodes()[range->node];
+  const auto points = store.points().subspan(node.first, node.count);
+  const glm::dvec3 corner = node.origin - m_origin;
+  const auto found = std::find_if(points.begin(), points.end(), [&](const DisplayPoint& p) {
+    return glm::vec3(corner + node.step * glm::dvec3(p.x, p.y, p.z)) == m_points[drawn];
+  });
+  return store.sourcePosition(node.first + static_cast<std::uint64_t>(found - points.begin()));
+}
+
+void CloudLayer::build(const glm::dvec3& origin, double density, std::uint64_t budget, const PointStyle& style) {
   m_origin = origin;
   m_points.clear();
   m_colours.clear();
   m_ranges.clear();
   std::uint64_t total = 0;
-  for (const auto& cloud : m_clouds) total += cloud->pointCount();
+  for (const auto& cloud : m_clouds) total += cloud.points.store->pointCount();
   const double most = total > budget && total > 0 ? static_cast<double>(budget) / static_cast<double>(total) : 1.0;
   const double share = std::clamp(density, 0.0, 1.0) * most;
   // A small cloud moves fluidly as it is.
   const double coarse = share * static_cast<double>(total) < 200000.0 ? share : share * kCoarsePart;
   m_points.reserve(static_cast<std::size_t>(1.05 * share * static_cast<double>(total)) + 1000);
   m_colours.reserve(m_points.capacity());
-  addPoints(0.0, coarse);
+  addPoints(0.0, coarse, style);
   const std::size_t split = m_points.size();
-  addPoints(coarse, share);
+  addPoints(coarse, share, style);
   const std::span<const glm::vec3> points(m_points);
   const std::span<const glm::u8vec3> colours(m_colours);
   m_coarse.mapper->SetInputData(verticesOf(points.first(split), colours.first(split)));
@@ -79,7 +111,7 @@ void CloudLayer::setMoving(bool moving) {
 
 Bounds CloudLayer::bounds() const {
   Bounds all;
-  for (const auto& cloud : m_clouds) all.add(cloud->bounds());
+  for (const auto& cloud : m_clouds) all.add(cloud.points.store->bounds());
   return all;
 }
 
@@ -107,11 +139,8 @@ std::optional<LayerHit> CloudLayer::hit(const ViewCamera& camera, const glm::dve
     if (candidate.second.x <= 1.02f * nearest && (best == nullptr || candidate.second.y < best->second.y))
       best = &candidate;
   if (best == nullptr) return std::nullopt;
-  auto range = std::upper_bound(m_ranges.begin(), m_ranges.end(), best->first,
-                                [](std::size_t drawn, const Range& r) { return drawn < r.firstDrawn; });
-  --range;
   LayerHit found;
-  found.pick.world = m_clouds[range->cloud]->sourcePosition(range->firstPoint + (best->first - range->firstDrawn));
+  found.pick.world = positionOf(best->first);
   found.depth = camera.depthOf(found.pick.world);
   return found;
 }

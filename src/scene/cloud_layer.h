@@ -8,7 +8,7 @@
 
 #include <vtkRenderer.h>
 
-#include "cloud/point_store.h"
+#include "cloud/point_styler.h"
 #include "scene/layer_hit.h"
 #include "scene/polydata.h"
 
@@ -21,9 +21,9 @@ class CloudLayer {
  public:
   explicit CloudLayer(vtkRenderer* renderer);
 
-  void set(const std::vector<std::shared_ptr<const PointStore>>& clouds) { m_clouds = clouds; }
-  /// Picks the points: density 0..1 of min(all, budget). Call after set() and when the origin moves.
-  void build(const glm::dvec3& origin, double density, std::uint64_t budget);
+  void set(const std::vector<ScanPoints>& clouds);
+  /// Picks the points: density 0..1 of min(all, budget), then styled. Call after set() and when the origin moves.
+  void build(const glm::dvec3& origin, double density, std::uint64_t budget, const PointStyle& style);
   void setPointSize(double pixels);
   void setMoving(bool moving);
 
@@ -33,14 +33,19 @@ class CloudLayer {
   std::optional<LayerHit> hit(const ViewCamera& camera, const glm::dvec2& px, double radiusPx) const;
 
  private:
+  struct Cloud {
+    ScanPoints points;
+    std::unique_ptr<PointStyler> styler;
+  };
   struct Range {
     std::size_t firstDrawn;  ///< into m_points
     std::size_t cloud;
-    std::uint64_t firstPoint;  ///< of the store
+    std::uint32_t node;
   };
-  void addPoints(double fromShare, double toShare);
+  void addPoints(double fromShare, double toShare, const PointStyle& style);
+  glm::dvec3 positionOf(std::size_t drawn) const;
 
-  std::vector<std::shared_ptr<const PointStore>> m_clouds;
+  std::vector<Cloud> m_clouds;
   glm::dvec3 m_origin{0};
   std::vector<glm::vec3> m_points;  ///< drawn ones, relative to m_origin; coarse ones first
   std::vector<glm::u8vec3> m_colours;

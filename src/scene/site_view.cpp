@@ -38,6 +38,7 @@ constexpr double kNearestPlane = 1e-5;  // of the farthest plane
 struct SiteView::Impl {
   GlTarget target;
   vtkSmartPointer<vtkRenderer> renderer = vtkSmartPointer<vtkRenderer>::New();
+  PointStyle style;
   CloudLayer clouds{renderer};
   SceneDesignLayer designs{renderer};
   FrameLayer frames{renderer};
@@ -85,7 +86,7 @@ struct SiteView::Impl {
     return work;
   }
 
-  void buildClouds() { clouds.build(origin, density, pointBudget()); }
+  void buildClouds() { clouds.build(origin, density, pointBudget(), style); }
   void buildFrames() {
     const Bounds site = siteBounds();
     frames.build(origin, site.empty() ? frames.bounds().diagonal() : site.diagonal());
@@ -185,9 +186,10 @@ void SiteView::paint(unsigned framebuffer) {
   d.target.paint(framebuffer, d.camera.width(), d.camera.height());
 }
 
-void SiteView::setClouds(const std::vector<std::shared_ptr<const PointStore>>& clouds, double density,
-                         double pointSize) {
+void SiteView::setClouds(const std::vector<ScanPoints>& clouds, double density, double pointSize,
+                         const PointStyle& style) {
   m_impl->clouds.set(clouds);
+  m_impl->style = style;
   m_impl->density = density;
   m_impl->pointSize = pointSize;
   m_impl->buildClouds();
@@ -195,8 +197,9 @@ void SiteView::setClouds(const std::vector<std::shared_ptr<const PointStore>>& c
   m_impl->applyScale();
 }
 
-void SiteView::setCloudDisplay(double density, double pointSize) {
-  const bool samePoints = density == m_impl->density;
+void SiteView::setCloudDisplay(double density, double pointSize, const PointStyle& style) {
+  const bool samePoints = density == m_impl->density && style == m_impl->style;
+  m_impl->style = style;
   m_impl->density = density;
   m_impl->pointSize = pointSize;
   if (!samePoints) m_impl->buildClouds();

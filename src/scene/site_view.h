@@ -13,7 +13,7 @@
 #include <glm/glm.hpp>
 
 #include "camera/camera.h"
-#include "cloud/point_store.h"
+#include "cloud/point_styler.h"
 #include "geometry/bounds.h"
 #include "geometry/rigid_transform.h"
 #include "survey/design_model.h"
@@ -72,9 +72,9 @@ class SiteView {
 
   /// `density` 0..1 is the share of the points that may be drawn: of all, or of the point budget
   /// where there are more. A coarser picture is a subset of a finer one.
-  void setClouds(const std::vector<std::shared_ptr<const PointStore>>& clouds, double density, double pointSize);
-  /// The same clouds at another density or size; cheap while only the size changes.
-  void setCloudDisplay(double density, double pointSize);
+  void setClouds(const std::vector<ScanPoints>& clouds, double density, double pointSize, const PointStyle& style = {});
+  /// The same clouds at another density, size or style; cheap while only the size changes.
+  void setCloudDisplay(double density, double pointSize, const PointStyle& style = {});
   /// Points drawn at density 1; by default 1 M, which software OpenGL draws in a quarter of a second.
   void setPointBudget(std::uint64_t points);
   void setDesigns(const std::vector<SceneDesign>& designs);

@@ -4,10 +4,13 @@
 #include <filesystem>
 
 #include <QDropEvent>
+#include <QFileInfo>
+#include <QMessageBox>
 #include <QMimeData>
 #include <QPushButton>
 
 #include "io/project_store.h"
+#include "ui/project_files.h"
 #include "ui/window_fixture.h"
 
 namespace alidade::test {
@@ -60,7 +63,7 @@ TEST_F(EmptyWindow, AScanPicturesAndADesignDroppedTogetherMakeAProject) {
   EXPECT_EQ(project.scans.size(), 1u);
   EXPECT_EQ(project.designs.size(), 1u);
   EXPECT_EQ(project.frames.size(), demo->frames.size());
-  EXPECT_FALSE(window.session().data()->clouds.empty());
+  EXPECT_FALSE(window.session().data()->scans.empty());
   // Pictures without cameras cannot carry the design: a note says what to do, with a button.
   bool nextStep = false;
   for (const Message& message : window.session().messages().messages())
@@ -100,6 +103,37 @@ TEST_F(EmptyWindow, OpensTheRoad) {
   EXPECT_FALSE(rendered->frame.picture.elements.empty());
   EXPECT_LE(rendered->frame.picture.worstErrorPx, 0.1);
   window.session().markSaved("");
+}
+
+TEST_F(OpenWindow, SaveInTheCloseQuestionSavesAndThenCloses) {
+  const QString path = folder.filePath("copy.alidade");
+  window->findChild<ProjectFiles*>()->saveAs(path);
+  ASSERT_TRUE(waitFor([&] { return QFileInfo::exists(path) && window->session().jobs().idle(); }));
+  session().change("Rename", [](Project& project) { project.name = "Renamed"; });
+  ASSERT_TRUE(session().workUnsaved());
+  QTimer::singleShot(0, window.get(), [] {
+    auto* box = qobject_cast<QMessageBox*>(QApplication::activeModalWidget());
+    ASSERT_NE(box, nullptr);
+    box->button(QMessageBox::Save)->click();
+  });
+  window->close();
+  ASSERT_TRUE(waitFor([&] { return !window->isVisible(); }));
+  const auto saved = loadProject(path.toStdString());
+  ASSERT_TRUE(saved) << saved.error().text();
+  EXPECT_EQ(saved->name, "Renamed");
+}
+
+TEST_F(OpenWindow, CancelInTheCloseQuestionKeepsTheWindowAndTheWork) {
+  session().change("Rename", [](Project& project) { project.name = "Renamed"; });
+  QTimer::singleShot(0, window.get(), [] {
+    auto* box = qobject_cast<QMessageBox*>(QApplication::activeModalWidget());
+    ASSERT_NE(box, nullptr);
+    box->button(QMessageBox::Cancel)->click();
+  });
+  window->close();
+  EXPECT_TRUE(window->isVisible());
+  EXPECT_TRUE(session().workUnsaved());
+  session().markSaved(session().project()->path);
 }
 
 }  // namespace alidade::test

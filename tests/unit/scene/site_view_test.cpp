@@ -135,7 +135,7 @@ class SiteViewTest : public ::testing::TestWithParam<double> {
   void showAll() {
     place = glm::dvec3(GetParam(), GetParam() * 0.5, 412);
     view->setDesigns({{kDesign, makeDesign(place), {}}});
-    view->setClouds({makeCloud(place)}, 1.0, 1.0);
+    view->setClouds({{makeCloud(place), nullptr, 0}}, 1.0, 1.0);
     view->setStakePoints({{"S1", place + glm::dvec3(0, -2, 0), "peg", 0.5}, {"S2", place + glm::dvec3(0, 5, 0), "", 0.02}});
     view->setFrames(makeFrames(place));
   }
