@@ -202,7 +202,8 @@ void visit(V& v, CameraRow& row) {
   for (std::size_t i = 0; i < growth.size(); ++i) v(growth[i], d.t[i]);
   for (std::size_t i = 0; i < prism.size(); ++i) v(prism[i], d.s[i]);
   v("shear", d.shear);
-  v("skew", d.skew);
+  // One column for the two: no model has both.
+  v("skew", k.model == CameraModel::BrownSkewed ? d.imageSkew : d.skew);
   v("tau_x", d.tauX);
   v("tau_y", d.tauY);
   v("fisheye", d.fisheye);

@@ -145,7 +145,9 @@ Project fullProject(const TestFolder& folder) {
   lens.distortion.s = {1e-5, 2e-5, 3e-5, 4e-5};
   lens.distortion.p1 = -0.0005;
   lens.distortion.tauX = 0.001;
-  project.cameras = {{CameraId{4}, "drone", Camera(lens)}, {CameraId{5}, "none", Camera()}};
+  const Intrinsics skewed = Intrinsics::fromParameters(CameraModel::BrownSkewed, 640, 480,
+                                                       {500, 501, 320, 240, -0.2, 0.05, -0.01, 0.002, 1e-3, -2e-3, 0.1, -0.05, 0.004}).value();
+  project.cameras = {{CameraId{4}, "drone", Camera(lens)}, {CameraId{5}, "none", Camera()}, {CameraId{6}, "skewed", Camera(skewed)}};
   project.videos.resize(2);
   for (auto& video : project.videos) visit(fill, video), video.source.path = folder / "v.mp4";
   project.frames.resize(3);
