@@ -34,6 +34,12 @@ double standardised(const PoseProblem& problem, const PoseState& state, const Ma
   Eigen::Matrix2d own;
   own << given[0][0], given[1][0], given[0][1], given[1][1];
   own += (used ? -1 : 1) * byPose;
+  const double determinant = own(0, 0) * own(1, 1) - own(0, 1) * own(0, 1), trace = own(0, 0) + own(1, 1);
+  const double smallest = 0.5 * (trace - std::sqrt(std::max(0.0, trace * trace - 4 * determinant)));
+  if (smallest > 0.01 * variance) {
+    const glm::dvec2& o = at->residualPx;
+    return std::sqrt((own(1, 1) * o.x * o.x - 2 * own(0, 1) * o.x * o.y + own(0, 0) * o.y * o.y) / determinant);
+  }
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes;
   axes.computeDirect(own);
   const Eigen::Vector2d r = axes.eigenvectors().transpose() * Eigen::Vector2d(at->residualPx.x, at->residualPx.y);
