@@ -180,7 +180,7 @@ PoseState PoseProblem::descend(PoseState state, const std::vector<int>& chosen, 
                                int* used) const {
   double damping = 1e-6;
   // A robust solution only starts what least squares finishes.
-  const double enough = huberSigmas > 0 ? 1e-5 : 1e-14;
+  const double enough = huberSigmas > 0 ? 1e-3 : 1e-14;
   Normals at = normals(state, chosen, huberSigmas, false);
   for (int i = 0; i < iterations && std::isfinite(at.cost); ++i) {
     if (used) ++*used;
