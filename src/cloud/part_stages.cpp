@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <optional>
 #include <type_traits>
 
 #include "cloud/byte_pack.h"
@@ -25,13 +26,15 @@ struct Run {
   const std::byte* records;
 };
 
-std::vector<Run> runsOf(const RecordStreams::Loaded& loaded, std::size_t recordBytes) {
+/// Nothing where a run does not fit its extent.
+std::optional<std::vector<Run>> runsOf(const RecordStreams::Loaded& loaded, std::size_t recordBytes) {
   std::vector<Run> runs;
   for (const auto& part : loaded.parts) {
     for (std::uint32_t at = 0; at + sizeof(RecordStreams::RunHeader) <= part.used;) {
       RecordStreams::RunHeader header;
       std::memcpy(&header, part.data + at, sizeof header);
       at += static_cast<std::uint32_t>(sizeof header);
+      if (header.count > (part.used - at) / recordBytes) return std::nullopt;
       runs.push_back({header.cell, header.count, header.batch, part.data + at});
       at += static_cast<std::uint32_t>(header.count * recordBytes);
     }
@@ -110,6 +113,7 @@ PartStages::PartStages(const Lattice& lattice, const PointSchema& schema, const 
   m_tileOrder = workOrderOf(boxes, 1);
   m_done.resize(m_spread.cells.size());
   m_streamDone.assign(m_usedStreams.size(), 0);
+  m_ends.resize(m_usedStreams.size());
 }
 
 Result<void> PartStages::begin() {
@@ -155,7 +159,7 @@ Result<std::unique_ptr<PartStages>> PartStages::resume(const std::vector<std::ve
   streamOptions.extentBytes = note.get<std::uint64_t>();
   streamOptions.recordBytes = RecordLayout(lattice, schema).bytes;
   streamOptions.spillPath = sink.spillPath();
-  if (!note.ok() || spread.streamCount > (1u << 28)) return damaged();
+  if (!note.ok() || spread.streamCount > (1u << 28) || streamOptions.extentBytes == 0) return damaged();
   std::vector<std::vector<RecordStreams::Extent>> extents;
   for (std::uint32_t s = 0; s < spread.streamCount && note.ok(); ++s) extents.push_back(note.getAll<RecordStreams::Extent>());
   if (!note.ok()) return damaged();
@@ -201,9 +205,9 @@ bool PartStages::readNote(const std::vector<std::byte>& bytes) {
   }
   if (!note.ok()) return false;
   m_streamDone[stream] = 1;
-  while (m_finished < m_streamOrder.order.size() && m_streamDone[m_streamOrder.order[m_finished]]) ++m_finished;
-  if (m_finished > 0 && m_streamOrder.order[m_finished - 1] == stream)
-    m_next = {at.points + points, at.tables + tables / sizeof(std::uint32_t), at.tops + tops};
+  m_ends[stream] = {at.points + points, at.tables + tables / sizeof(std::uint32_t), at.tops + tops};
+  while (m_finished < m_streamOrder.order.size() && m_streamDone[m_streamOrder.order[m_finished]])
+    m_next = m_ends[m_streamOrder.order[m_finished++]];
   return true;
 }
 
@@ -252,10 +256,13 @@ Result<PartStages::Output> PartStages::buildStream(std::uint32_t stream) {
   output.columns.resize(PartSink::kFirstAttribute + m_schema.columns.size());
   auto loaded = m_streams->load(m_usedStreams[stream]);
   if (!loaded) return fail(loaded.error());
-  std::vector<Run> runs = runsOf(*loaded, m_layout.bytes);
+  const auto damaged = [this] { return fail(kDamagedSpill, m_streams->options().spillPath, "Index the scan again"); };
+  auto found = runsOf(*loaded, m_layout.bytes);
+  if (!found) return damaged();
+  std::vector<Run>& runs = *found;
   for (Run& run : runs) {
     const auto cell = m_cellOfId.find(run.cell);
-    if (cell == m_cellOfId.end()) return fail("The temporary file of the point store is damaged", m_streams->options().spillPath, "Index the scan again");
+    if (cell == m_cellOfId.end()) return damaged();
     run.cell = cell->second;
   }
   std::stable_sort(runs.begin(), runs.end(),
@@ -276,7 +283,7 @@ Result<PartStages::Output> PartStages::buildStream(std::uint32_t stream) {
       }
     }
     if (records.size() != m_spread.cells[c].count)
-      return fail("The temporary file of the point store is damaged", m_streams->options().spillPath, "Index the scan again");
+      return damaged();
     CellPoints points = sortCell(cell, packed);
     const int coarsest = cell.depth > 0 ? cell.depth : kCoarsestPass;
     std::vector<Obstacle> obstacles;

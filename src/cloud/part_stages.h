@@ -80,6 +80,7 @@ class PartStages {
   std::vector<Tile> m_tiles;
   std::vector<char> m_streamDone;
   std::uint64_t m_finished = 0;  ///< streams that the diary vouches for, in work order
+  std::vector<Offsets> m_ends;   ///< by used stream that the diary vouches for: where its output ends
   Offsets m_next;
   bool m_keepsDiary = false;
 };

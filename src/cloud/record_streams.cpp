@@ -10,6 +10,7 @@
 #include <utility>
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "cloud/disk.h"
@@ -158,7 +159,14 @@ Result<void> RecordStreams::spillAll() {
 
 Result<void> RecordStreams::reopen(std::vector<std::vector<Extent>> extents) {
   m_extents = std::move(extents);
-  return openSpill(true);
+  if (auto opened = openSpill(true); !opened) return opened;
+  struct stat status {};
+  if (::fstat(m_file, &status) != 0) return fail(diskError(errno, m_options.spillPath));
+  const std::uint64_t whole = static_cast<std::uint64_t>(status.st_size) / m_options.extentBytes;
+  for (const auto& stream : m_extents)
+    for (const Extent& extent : stream)
+      if (!extent.inFile || extent.at >= whole || extent.used > m_options.extentBytes) return fail(kDamagedSpill, m_options.spillPath);
+  return {};
 }
 
 Result<RecordStreams::Loaded> RecordStreams::load(std::uint32_t stream) const {

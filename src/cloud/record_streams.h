@@ -16,6 +16,9 @@
 
 namespace alidade {
 
+/// The error of a temporary file that does not hold what was written: only a new start helps.
+inline constexpr const char* kDamagedSpill = "The temporary file of the point store is damaged";
+
 /// A block of memory aligned for direct file access.
 class AlignedBlock {
  public:
