@@ -46,6 +46,9 @@ struct PartOptions {
   std::uint64_t cellPoints = 500'000;
 };
 
+/// Cells for a scan of this many points: small clouds, too, are worth all cores.
+std::uint64_t cellPointsFor(std::uint64_t pointCount);
+
 /// A part as it was built; nodes[0] is the root, children stand side by side after their parents.
 struct PartTree {
   Lattice lattice;

@@ -84,6 +84,15 @@ std::uint16_t rgb565(unsigned r, unsigned g, unsigned b) {
 
 }  // namespace
 
+bool isOwnColumn(const ColumnShape& shape) {
+  bool found = false;
+  const PointBatch none;
+  forEachOwnColumn(none, [&](const char* name, NumberType type, int components, const auto&) {
+    found = found || shape == ColumnShape{name, type, components, false, 0};
+  });
+  return found;
+}
+
 bool PointSchema::include(const PointBatch& batch) {
   bool added = false;
   for (const ColumnView& view : viewsOf(batch)) {

@@ -27,6 +27,9 @@ struct ColumnShape {
   friend bool operator==(const ColumnShape&, const ColumnShape&) = default;
 };
 
+/// True for a column that PointBatch has a place for, with the type it has there.
+bool isOwnColumn(const ColumnShape& shape);
+
 /// Which columns a store keeps: the union over the source's batches. A batch without a column that others
 /// have counts as zeros there.
 struct PointSchema {

@@ -112,8 +112,7 @@ struct PointStoreBuilder::Impl {
     part.dimensions = options.dimensions;
     part.threads = options.threads > 0 ? options.threads : workerCount();
     part.memoryBytes = std::numeric_limits<std::uint64_t>::max() / 4;
-    // Small clouds, too, are worth all cores.
-    part.cellPoints = std::clamp<std::uint64_t>(count / 16, 50'000, 500'000);
+    part.cellPoints = cellPointsFor(count);
     MemorySink sink;
     auto tree = indexPart(source, part, sink, progress);
     if (!tree) return fail(tree.error());
