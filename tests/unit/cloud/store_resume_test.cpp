@@ -152,6 +152,28 @@ TEST(StoreResume, ADamagedTemporaryFileOrDiaryStartsAnew) {
   }
 }
 
+TEST(StoreResume, AFullDiskIsSaidAndGoneOnWith) {
+  const test::ScratchFolder scratch;
+  const std::string path = scratch / "one.alidade-points", whole = scratch / "whole.alidade-points";
+  const ScanSource scan = hallScan(kPoints);
+  ASSERT_TRUE(indexScans(std::span(&scan, 1), whole, spilling(), Progress()));
+  for (const rlim_t megabytes : {1, 10, 30}) {
+    // No file may grow beyond: as a disk without room, at another moment each.
+    const int outcome = inChild(
+        [&] {
+          const rlimit limit{megabytes << 20, megabytes << 20};
+          ::signal(SIGXFSZ, SIG_IGN);
+          if (::setrlimit(RLIMIT_FSIZE, &limit) != 0) return 2;
+          const auto report = indexScans(std::span(&scan, 1), path, spilling(), Progress());
+          if (report) return 3;
+          return report.error().what.starts_with("There is no room to write the point store") && !report.error().advice.empty() ? 0 : 4;
+        },
+        -1);
+    EXPECT_EQ(outcome, megabytes == 30 ? 3 : 0) << megabytes << " MB";
+  }
+  EXPECT_TRUE(filesOf(path) == filesOf(whole));
+}
+
 TEST(StoreResume, StaysInsideTheMemoryItIsGiven) {
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
   GTEST_SKIP() << "a sanitizer's own memory would be measured";
@@ -162,7 +184,7 @@ TEST(StoreResume, StaysInsideTheMemoryItIsGiven) {
   options.memoryBytes = 96 << 20;
   options.threads = 2;
   // Beside the points at work: program and stacks, batches between reader and workers, the sample.
-  constexpr std::uint64_t kBase = 64 << 20;
+  constexpr std::uint64_t kBase = 32 << 20;
   rusage used{};
   const std::uint64_t before = residentBytes();
   ASSERT_EQ(inChild([&] { return indexScans(std::span(&scan, 1), scratch / "one.alidade-points", options, Progress()) ? 0 : 1; }, -1, &used), 0);
