@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -31,8 +32,8 @@ struct TilePoints {
 ///
 /// Pass q goes over the survivors of pass q+1 in Morton order and accepts a point where no accepted one lies
 /// within 2^(10-q) units. A rejected point's level follows from its distance d to the nearest accepted one,
-/// level = 10 - log2(d): so larger holes fill first, the sets nest, and the level is continuous. Integers
-/// throughout: the same levels on every processor.
+/// level = 10 - log2(d): so larger holes fill first, the sets nest, and the level is continuous. All numbers
+/// that decide are whole and at most 2^24, exact in floats: the same levels on every processor.
 class BlueNoise {
  public:
   /// Runs passes finest, finest-1, …, coarsest; writes the level, in steps, of every point that was rejected
@@ -42,38 +43,48 @@ class BlueNoise {
                                   std::span<std::int16_t> levels, std::span<const std::int8_t> settled = {});
 
  private:
-  struct Set {
+  /// The survivors of a pass, padded by a register's width.
+  struct Survivors {
     std::vector<std::uint32_t> index;
-    std::vector<std::uint16_t> x, y, z;
-    void clear();
-    void push(const Set& from, std::size_t i);
-    std::size_t size() const { return index.size(); }
+    std::vector<float> x, y, z;         ///< units, halved as often as the pass asks
+    std::vector<std::uint8_t> splitBits;  ///< axis bits up to the highest in which a point and the one before it differ
+    std::size_t count = 0;
+    void reserve(std::size_t points);
   };
+  /// A cube of twice the spacing: its points are a run of the survivors.
   struct Brick {
-    std::uint32_t first = 0, last = 0;                  ///< of the survivors that went in
+    std::uint32_t first = 0, last = 0;
     std::uint32_t acceptedFirst = 0, acceptedLast = 0;  ///< of m_accepted
-    std::uint32_t obstacleFirst = 0, obstacleLast = 0;  ///< of m_near
+    std::uint32_t nearAt = kNoObstacle;                 ///< into m_nearSquared
+  };
+  static constexpr std::uint32_t kNoObstacle = 0xffffffff;
+  /// A cube of 4³ bricks, those that hold points in Morton order from firstBrick on.
+  struct Block {
     std::int32_t x = 0, y = 0, z = 0;
+    std::uint32_t firstBrick = 0;
+    std::uint64_t filled = 0;  ///< by the brick's Morton code in the block
+    std::array<std::uint32_t, 27> around{};  ///< blocks beside it, and itself
   };
   struct Pass;
+  struct Kernel;
 
   void runPass(int q, bool isFirst, std::span<const Obstacle> obstacles, std::span<std::int16_t> levels,
                std::span<const std::int8_t> settled);
-  void layBricks(const Pass& pass, std::span<const Obstacle> obstacles);
+  void layBricks(const Pass& pass);
+  void obstruct(const Pass& pass, std::span<const Obstacle> obstacles);
   std::uint32_t* slotOf(std::int32_t x, std::int32_t y, std::int32_t z);
-  void gather(const Pass& pass, const Brick& brick, bool own);
-  void addCandidate(std::int32_t x, std::int32_t y, std::int32_t z);
-  void padCandidates();
+  std::array<std::uint32_t, 27> blocksAround(std::int32_t x, std::int32_t y, std::int32_t z);
 
-  Set m_alive, m_accepted;
-  std::vector<char> m_rejected;
+  Survivors m_alive, m_accepted;
+  std::vector<float> m_squared;        ///< of each survivor's distance to the nearest accepted; -1: is one
   std::vector<Brick> m_bricks;
-  std::vector<std::uint32_t> m_table;  ///< open addressing: 1 + brick
+  std::vector<Block> m_blocks;
+  std::vector<std::uint32_t> m_table;  ///< open addressing: 1 + block
   std::uint64_t m_tableMask = 0;
   int m_tableShift = 0;
-  std::vector<Obstacle> m_near;
-  std::vector<std::int32_t> m_cx, m_cy, m_cz;  ///< candidates about the brick at hand
-  std::size_t m_candidates = 0;
+  std::vector<Obstacle> m_near;        ///< Morton order
+  std::vector<float> m_nearSquared;    ///< of the distance to the nearest obstacle, for points of bricks that have one
+  std::vector<char> m_given;           ///< survivors that are accepted whatever is near
 };
 
 /// The finest pass worth running for points of these sorted Morton codes: the first at which a fair share

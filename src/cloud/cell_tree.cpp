@@ -7,10 +7,18 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <memory>
 #include <utility>
 
 #include "cloud/morton.h"
 #include "cloud/node_spacing.h"
+
+// Loops of plain integer arithmetic, in the widest registers the processor has.
+#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
+#define ALIDADE_WIDEST __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#else
+#define ALIDADE_WIDEST
+#endif
 
 namespace alidade {
 
@@ -50,19 +58,49 @@ std::uint64_t codeOf(std::uint64_t packed) {
   return mortonOf(packed & 0xffff, packed >> 16 & 0xffff, packed >> 32 & 0xffff);
 }
 
-/// Least significant digit first, on bits [0, bits) above the row bits. Stable, so rows stay in source order.
-void radixSort(std::vector<std::uint64_t>& keys, int from, int bits) {
-  constexpr int kDigit = 11;
-  std::vector<std::uint64_t> other(keys.size());
-  for (int shift = from; shift < from + bits; shift += kDigit) {
-    std::array<std::uint32_t, 1 << kDigit> count{};
-    for (const std::uint64_t key : keys) ++count[key >> shift & ((1 << kDigit) - 1)];
-    if (std::any_of(count.begin(), count.end(), [&](std::uint32_t c) { return c == keys.size(); })) continue;
+using Keys = std::unique_ptr<std::uint64_t[]>;
+
+/// Least significant digit first, on bits [from, from + bits): the row bits below are in order already, and the sort
+/// is stable.
+void radixSort(Keys& keys, std::size_t count, int from, int bits) {
+  constexpr int kWidest = 11;
+  if (bits <= 0 || count < 2) return;
+  const int digits = (bits + kWidest - 1) / kWidest, width = (bits + digits - 1) / digits;
+  const std::uint64_t mask = (std::uint64_t{1} << width) - 1;
+  std::vector<std::array<std::uint32_t, 1 << kWidest>> counts(static_cast<std::size_t>(digits));
+  for (std::size_t i = 0; i < count; ++i) {
+    std::uint64_t rest = keys[i] >> from;
+    for (auto& digit : counts) ++digit[rest & mask], rest >>= width;
+  }
+  Keys other = std::make_unique_for_overwrite<std::uint64_t[]>(count);
+  for (std::size_t d = 0; d < counts.size(); ++d) {
+    const int shift = from + static_cast<int>(d) * width;
+    auto& next = counts[d];
+    if (next[keys[0] >> shift & mask] == count) continue;
     std::uint32_t sum = 0;
-    for (std::uint32_t& c : count) c = std::exchange(sum, sum + c);
-    for (const std::uint64_t key : keys) other[count[key >> shift & ((1 << kDigit) - 1)]++] = key;
+    for (std::uint32_t& c : next) c = std::exchange(sum, sum + c);
+    for (std::size_t i = 0; i < count; ++i) other[next[keys[i] >> shift & mask]++] = keys[i];
     std::swap(keys, other);
   }
+}
+
+/// Sort keys: what is wanted of the Morton code, above the row.
+ALIDADE_WIDEST void makeKeys(const std::uint64_t* packed, std::size_t count, std::uint64_t inCell, int drop, int rowBits,
+                             std::uint64_t* keys) {
+  for (std::size_t i = 0; i < count; ++i) keys[i] = (codeOf(packed[i]) & inCell) >> drop << rowBits | i;
+}
+
+/// Codes, rows and places from keys that hold the whole code within the cell.
+ALIDADE_WIDEST void readKeys(const std::uint64_t* keys, std::size_t count, std::uint64_t cellCode, int rowBits, std::uint64_t* code,
+                             std::uint32_t* row, std::uint16_t* x, std::uint16_t* y, std::uint16_t* z) {
+  const std::uint64_t rowMask = (std::uint64_t{1} << rowBits) - 1;
+  for (std::size_t i = 0; i < count; ++i) {
+    row[i] = static_cast<std::uint32_t>(keys[i] & rowMask);
+    code[i] = keys[i] >> rowBits | cellCode;
+  }
+  for (std::size_t i = 0; i < count; ++i) x[i] = static_cast<std::uint16_t>(gatherBits(code[i]));
+  for (std::size_t i = 0; i < count; ++i) y[i] = static_cast<std::uint16_t>(gatherBits(code[i] >> 1));
+  for (std::size_t i = 0; i < count; ++i) z[i] = static_cast<std::uint16_t>(gatherBits(code[i] >> 2));
 }
 
 /// A run of the list that becomes the node `node`.
@@ -149,12 +187,17 @@ CellPoints sortCell(const PlanCell& cell, std::span<const std::uint64_t> packed)
   points.droppedBits = std::max(0, (3 * axisBits + rowBits - 64 + 2) / 3);
   const int drop = 3 * points.droppedBits, bits = 3 * axisBits - drop;
   const std::uint64_t inCell = axisBits == 16 ? 0xffffffffffffull : (std::uint64_t{1} << 3 * axisBits) - 1;
-  std::vector<std::uint64_t> keys(count);
-  for (std::size_t i = 0; i < count; ++i) keys[i] = (codeOf(packed[i]) & inCell) >> drop << rowBits | i;
-  radixSort(keys, rowBits, bits);
+  Keys keys = std::make_unique_for_overwrite<std::uint64_t[]>(count);
+  makeKeys(packed.data(), count, inCell, drop, rowBits, keys.get());
+  radixSort(keys, count, rowBits, bits);
   points.code.resize(count), points.row.resize(count);
   points.x.resize(count), points.y.resize(count), points.z.resize(count);
   points.level.assign(count, 0);
+  if (drop == 0 && count > 0) {
+    readKeys(keys.get(), count, codeOf(packed[0]) & ~inCell, rowBits, points.code.data(), points.row.data(), points.x.data(),
+             points.y.data(), points.z.data());
+    return points;
+  }
   const std::uint64_t rowMask = (std::uint64_t{1} << rowBits) - 1;
   for (std::size_t i = 0; i < count; ++i) {
     const std::uint64_t row = keys[i] & rowMask, place = packed[row];
