@@ -62,6 +62,7 @@ CLI::Validator checkedBy(Parse parse, const std::string& name) {
 void addClean(Verbs& verbs);
 void addConvert(Verbs& verbs);
 void addDemo(Verbs& verbs);
+void addIndex(Verbs& verbs);
 void addInfo(Verbs& verbs);
 void addNew(Verbs& verbs);
 void addOverlay(Verbs& verbs);

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "cli/command.h"
+#include "cloud/store_folder.h"
 #include "io/project_store.h"
 #include "io/reader_registry.h"
 
@@ -151,6 +152,35 @@ Result<Description> describeProject(const std::string& path) {
   return out;
 }
 
+Result<Description> describeStore(const std::string& path) {
+  const auto store = openStore(path);
+  if (!store) return fail(store.error());
+  Description out;
+  out.json = {{"kind", "point_store"}, {"points", 0}, {"bounds_m", nullptr}, {"parts", Json::array()}};
+  std::uint64_t points = 0;
+  Bounds bounds;
+  std::string parts;
+  for (const StorePart& part : store->parts) {
+    const PartManifest& manifest = part.manifest;
+    points += manifest.pointCount;
+    bounds.add(part.points->bounds());
+    std::vector<std::string> columns;
+    for (const AttributeColumn& column : part.points->attributes()) columns.push_back(column.name);
+    const char* levels = manifest.levelKind == LevelKind::BlueNoise ? "blue-noise" : "random";
+    out.json["parts"].push_back({{"source", manifest.source}, {"points", manifest.pointCount}, {"dropped", manifest.dropped},
+                                 {"bounds_m", boundsJson(part.points->bounds())}, {"crs", manifest.info.crs}, {"attributes", columns},
+                                 {"stations", manifest.info.stations.size()}, {"levels", levels}, {"nodes", manifest.nodeCount},
+                                 {"spacing_m", part.points->medianSpacing()}});
+    parts += fmt::format("  part      {}\n            {} points, {} nodes, {} levels, spacing {:.4f} m; {}\n", manifest.source,
+                         manifest.pointCount, manifest.nodeCount, levels, part.points->medianSpacing(), fmt::join(columns, ", "));
+  }
+  out.json["points"] = points;
+  out.json["bounds_m"] = boundsJson(bounds);
+  out.text = fmt::format("  points    {} in {}\n", points, store->parts.size() == 1 ? "1 part" : fmt::format("{} parts", store->parts.size())) +
+             boundsText(bounds) + parts;
+  return out;
+}
+
 /// By its name, or by its first bytes: a project may have lost its ending.
 bool isProject(const std::string& path) {
   if (path.ends_with(".alidade")) return true;
@@ -161,6 +191,7 @@ bool isProject(const std::string& path) {
 
 Result<Description> describeFile(const std::string& path) {
   if (isProject(path)) return describeProject(path);
+  if (isStoreFolder(path)) return describeStore(path);
   const auto reader = ReaderRegistry::instance().find(path);
   if (!reader) return fail(reader.error());
   auto described = [&]() -> Result<Description> {
@@ -201,7 +232,7 @@ void addInfo(Verbs& verbs) {
         }
         return answer;
       });
-  command->add_option("files", *files, "Scans, designs, cameras, pictures, stake-out lists, projects")->required();
+  command->add_option("files", *files, "Scans, designs, cameras, pictures, stake-out lists, projects, point stores")->required();
 }
 
 }  // namespace alidade::cli

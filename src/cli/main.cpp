@@ -44,6 +44,7 @@ int main(int argc, char** argv) {
   cli::Verbs verbs(app);
   cli::addConvert(verbs);
   cli::addDemo(verbs);
+  cli::addIndex(verbs);
   cli::addInfo(verbs);
   cli::addNew(verbs);
   cli::addOverlay(verbs);
