@@ -9,6 +9,7 @@
 #include <deque>
 #include <mutex>
 #include <thread>
+#include <type_traits>
 #include <unordered_map>
 
 namespace alidade {
@@ -75,11 +76,11 @@ class BatchQueue {
 
 /// Leaves out the points that cannot be used. Returns how many.
 std::uint64_t dropUnusable(PointBatch& batch) {
+  if (std::all_of(batch.position.begin(), batch.position.end(), isUsablePosition)) return 0;
   std::vector<std::uint32_t> good;
   for (std::size_t i = 0; i < batch.size(); ++i)
     if (isUsablePosition(batch.position[i])) good.push_back(static_cast<std::uint32_t>(i));
   const std::size_t all = batch.size();
-  if (good.size() == all) return 0;
   const auto pick = [&](auto& column) {
     if (column.size() != all) return;
     for (std::size_t i = 0; i < good.size(); ++i) column[i] = column[good[i]];
@@ -185,6 +186,21 @@ class Worker {
     return cell < m_plan.cells().size() ? m_plan.streamOf(cell) : m_otherStreams.at(cell);
   }
 
+  /// The records of these points, one after the other.
+  void copyRecords(const std::uint32_t* rows, std::uint32_t count, std::byte* to) const {
+    const std::byte* records = m_records.data();
+    const auto copy = [&](auto stride) {
+      for (std::uint32_t i = 0; i < count; ++i) std::memcpy(to + i * std::size_t{stride}, records + rows[i] * std::size_t{stride}, stride);
+    };
+    switch (m_layout.bytes) {
+      case 8: return copy(std::integral_constant<std::size_t, 8>{});
+      case 16: return copy(std::integral_constant<std::size_t, 16>{});
+      case 24: return copy(std::integral_constant<std::size_t, 24>{});
+      case 32: return copy(std::integral_constant<std::size_t, 32>{});
+      default: return copy(m_layout.bytes);
+    }
+  }
+
   /// Records to their streams, a run a cell, in the batch's order inside it.
   void send(std::uint64_t number, std::size_t count) {
     const std::uint32_t most = *std::max_element(m_cells.begin(), m_cells.begin() + static_cast<std::ptrdiff_t>(count));
@@ -197,7 +213,6 @@ class Worker {
     std::uint32_t sum = 0;
     for (const std::uint32_t cell : m_met) m_next[cell] = sum, sum += m_inBatch[cell];
     for (std::size_t i = 0; i < count; ++i) m_sorted[m_next[m_cells[i]]++] = static_cast<std::uint32_t>(i);
-    const std::size_t stride = m_layout.bytes;
     const std::uint32_t* row = m_sorted.data();
     for (const std::uint32_t cell : m_met) {
       m_counts[cell] += m_inBatch[cell];
@@ -205,10 +220,8 @@ class Worker {
         std::uint32_t fits = 0;
         std::byte* to = m_writer.beginRun(streamOf(cell), {cell, m_inBatch[cell], number}, &fits);
         m_inBatch[cell] -= fits;
-        for (; fits > 0; --fits, to += stride) {
-          const std::byte* from = m_records.data() + *row++ * stride;
-          for (std::size_t word = 0; word < stride; word += 8) std::memcpy(to + word, from + word, 8);
-        }
+        copyRecords(row, fits, to);
+        row += fits;
       }
     }
   }

@@ -87,9 +87,10 @@ struct PointStoreBuilder::Impl {
     // A copy at a time: a source may be read again where its first points promised too much.
     source.read = [this](const ScanSource::Sink& sink, const Progress& reading) -> Result<void> {
       std::uint64_t done = 0;
+      PointBatch batch;  // the sink leaves a used one: its memory is at hand
       for (const PointBatch& each : batches) {
         if (reading.cancelled()) return fail(cancelledError());
-        PointBatch batch = each;
+        batch = each;
         done += batch.size();
         if (!sink(batch)) break;
         reading.report(static_cast<double>(done) / static_cast<double>(std::max<std::uint64_t>(count, 1)), "Sorting points");
