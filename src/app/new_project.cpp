@@ -7,6 +7,7 @@
 
 #include "app/jobs.h"
 #include "app/pose_matching.h"
+#include "cloud/store_folder.h"
 #include "io/project_store.h"
 #include "io/reader_registry.h"
 #include "io/rig_file.h"
@@ -56,6 +57,7 @@ class Assembler {
   Assembler(Project project, const Progress& progress) : m_progress(progress) { m_outcome.project = std::move(project); }
 
   Result<void> addScan(const std::string& path) {
+    if (isStoreFolder(path)) return addStore(path);
     const auto reader = ReaderRegistry::instance().findAs<ScanReader>(path);
     if (!reader) return fail(reader.error());
     auto info = (*reader)->inspect(path);
@@ -68,6 +70,26 @@ class Assembler {
     scan.source = std::move(*source);
     if (isThere(project().scans, scan.source)) return {};
     scan.info = std::move(*info);
+    noteCrs(scan.info.crs, path);
+    project().scans.push_back(std::move(scan));
+    return {};
+  }
+
+  /// A point store is a scan that is ready to draw: it is used where it lies.
+  Result<void> addStore(const std::string& path) {
+    const auto store = openStore(path);
+    if (!store) return fail(store.error());
+    Scan scan;
+    scan.id.value = nextId(project().scans);
+    scan.name = stemOf(path);
+    scan.source.path = absolute(path);
+    if (isThere(project().scans, scan.source)) return {};
+    if (!store->parts.empty()) scan.info = store->parts.front().manifest.info;
+    scan.info.pointCount = 0;
+    for (const StorePart& part : store->parts) {
+      scan.info.pointCount += part.points->pointCount();
+      scan.info.bounds.add(part.points->bounds());
+    }
     noteCrs(scan.info.crs, path);
     project().scans.push_back(std::move(scan));
     return {};
@@ -145,6 +167,7 @@ class Assembler {
 
   /// By what the file is. A CSV named like control points is taken for such.
   Result<void> addAnything(const std::string& path) {
+    if (isStoreFolder(path)) return addStore(path);
     const auto reader = ReaderRegistry::instance().find(path);
     if (!reader) return fail(reader.error());
     switch ((*reader)->kind()) {

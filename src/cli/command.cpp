@@ -65,6 +65,32 @@ CLI::App* Verbs::add(const std::string& name, const std::string& description, Ve
   return command;
 }
 
+namespace {
+
+/// Sends what libraries print on standard output to standard error while a verb runs: the answer alone is
+/// what scripts read.
+class QuietOutput {
+ public:
+  QuietOutput() : m_output(::dup(STDOUT_FILENO)) {
+    std::fflush(stdout);
+    if (m_output >= 0) ::dup2(STDERR_FILENO, STDOUT_FILENO);
+  }
+  ~QuietOutput() {
+    if (m_output < 0) return;
+    std::fflush(stdout);
+    std::cout.flush();
+    ::dup2(m_output, STDOUT_FILENO);
+    ::close(m_output);
+  }
+  QuietOutput(const QuietOutput&) = delete;
+  QuietOutput& operator=(const QuietOutput&) = delete;
+
+ private:
+  int m_output;
+};
+
+}  // namespace
+
 int Verbs::run() const {
   for (const Entry& entry : m_entries) {
     if (!entry.command->parsed()) continue;
@@ -72,7 +98,10 @@ int Verbs::run() const {
     // A file size limit then is an error like a full disk, with a message and nothing left behind.
     std::signal(SIGXFSZ, SIG_IGN);
     Bar bar;
-    const auto answer = entry.run(bar.progress());
+    const auto answer = [&] {
+      const QuietOutput quiet;
+      return entry.run(bar.progress());
+    }();
     bar.clear();
     if (!answer) {
       if (*entry.json) std::cout << jsonOf(answer.error()) << std::flush;
