@@ -24,11 +24,15 @@ SelectionOptions selectionOptions(const DisplaySettings& display) {
   return options;
 }
 
-SplatOptions splatOptions(const DisplaySettings& display) {
+SplatOptions splatOptions(const FrameDescription& frame) {
+  const DisplaySettings& display = frame.display;
   SplatOptions options;
   options.colour = true;
   options.pointSize = display.pointSize;
   options.round = display.roundPoints;
+  if (display.points.sizeLaw == PointSizeLaw::Screen)
+    for (const ScanLayer& scan : frame.scans)
+      options.worldSizeM = std::max(options.worldSizeM, scan.points.store->medianSpacing());
   options.fixedSize = display.points.sizeLaw == PointSizeLaw::Fixed;
   return options;
 }
@@ -97,7 +101,7 @@ ScanPictures ScanPainter::draw(const FrameDescription& frame, const Camera& came
         .apply(frame.display.points, PointStyler::Part::ColourAndFilter, frame.cameraFromWorld.centre(),
                layers.back().selection);
   }
-  SplatImages splats = splat(layers, camera, frame.cameraFromWorld, splatOptions(frame.display));
+  SplatImages splats = splat(layers, camera, frame.cameraFromWorld, splatOptions(frame));
   if (frame.display.points.eyeDome)
     applyEyeDome(splats.depth, {frame.display.points.eyeDomeStrength, 1}, splats.colour);
   pictures.colour = std::move(splats.colour);

@@ -208,7 +208,8 @@ SplatRun makeRun(const PointStore& store, const SelectedRange& range, const Rigi
   run.view.checkDomain =
       base.checkDomain && reachesBeyond(std::sqrt(base.surelyInsideSquared), node.bounds, cameraFromWorld);
   const double focal = std::sqrt(std::abs(static_cast<double>(base.fx) * base.fy));
-  const double sizeTimesDepth = options.fixedSize ? 0.0 : options.pointSize * range.spacing * focal;
+  const double width = options.worldSizeM > 0 ? options.worldSizeM : range.spacing;
+  const double sizeTimesDepth = options.fixedSize ? 0.0 : options.pointSize * width * focal;
   run.view.sizeTimesDepth = static_cast<float>(sizeTimesDepth);
   const double nearest = nearestDepth(node.bounds, cameraFromWorld);
   run.view.onePixel = base.largest <= 1.0f || (base.smallest <= 1.0f && sizeTimesDepth <= nearest);

@@ -28,6 +28,9 @@ struct SplatOptions {
   double minimumSizePx = 1.0;
   double maximumSizePx = 16.0;
   bool round = false;
+  /// Every point this wide in the world, metres, before `pointSize`: Zhang (2020), whose s n r H / (z tan(fov/2))
+  /// is s w f / z with w = n r H / (f tan(fov/2)). 0: as wide as its neighbours are apart.
+  double worldSizeM = 0;
   bool fixedSize = false;  ///< Gantner (2018): pointSize is the size in pixels for every point
 };
 

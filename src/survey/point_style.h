@@ -19,7 +19,7 @@ enum class ColourRamp { Viridis, Cividis, Grey };
 /// How large a point is drawn.
 enum class PointSizeLaw {
   Spacing,  ///< as wide as its neighbours are apart, so that surfaces close
-  Screen,   ///< Zhang (2020): s n r H / (z tan(fov / 2)) with n = r = the median spacing
+  Screen,   ///< Zhang (2020): the same width in the world for all, the coarsest scan's median spacing
   Fixed,    ///< Gantner (2018): the same number of pixels for all
 };
 

@@ -249,6 +249,8 @@ TEST(Splatter, FootprintsFollowSpacingOverDepth) {
   EXPECT_EQ(coveredWidth(onePoint({.maximumSizePx = 3}, 0.1), 50), 3);
   EXPECT_EQ(coveredWidth(onePoint({.minimumSizePx = 4}, 0.001), 50), 4);
   EXPECT_EQ(coveredWidth(onePoint({.pointSize = 3, .fixedSize = true}, 0.1), 50), 3);
+  EXPECT_EQ(coveredWidth(onePoint({.worldSizeM = 0.1}, 0.001), 50), 5);
+  EXPECT_EQ(coveredWidth(onePoint({.pointSize = 2.0, .worldSizeM = 0.1}, 0.3), 50), 10);
   const SplatImages disc = onePoint({.round = true}, 0.18);
   EXPECT_EQ(coveredWidth(disc, 50), 9);
   EXPECT_EQ(coveredWidth(disc, 46), 5);  // 2 sqrt(4.5² - 4²) = 4.1: centres at -2..2
