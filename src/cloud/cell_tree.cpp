@@ -7,11 +7,11 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <memory>
 #include <utility>
 
 #include "cloud/morton.h"
 #include "cloud/node_spacing.h"
+#include "cloud/radix_sort.h"
 
 // Loops of plain integer arithmetic, in the widest registers the processor has.
 #if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
@@ -56,32 +56,6 @@ std::int16_t levelAboveTile(double u) {
 
 std::uint64_t codeOf(std::uint64_t packed) {
   return mortonOf(packed & 0xffff, packed >> 16 & 0xffff, packed >> 32 & 0xffff);
-}
-
-using Keys = std::unique_ptr<std::uint64_t[]>;
-
-/// Least significant digit first, on bits [from, from + bits): the row bits below are in order already, and the sort
-/// is stable.
-void radixSort(Keys& keys, std::size_t count, int from, int bits) {
-  constexpr int kWidest = 11;
-  if (bits <= 0 || count < 2) return;
-  const int digits = (bits + kWidest - 1) / kWidest, width = (bits + digits - 1) / digits;
-  const std::uint64_t mask = (std::uint64_t{1} << width) - 1;
-  std::vector<std::array<std::uint32_t, 1 << kWidest>> counts(static_cast<std::size_t>(digits));
-  for (std::size_t i = 0; i < count; ++i) {
-    std::uint64_t rest = keys[i] >> from;
-    for (auto& digit : counts) ++digit[rest & mask], rest >>= width;
-  }
-  Keys other = std::make_unique_for_overwrite<std::uint64_t[]>(count);
-  for (std::size_t d = 0; d < counts.size(); ++d) {
-    const int shift = from + static_cast<int>(d) * width;
-    auto& next = counts[d];
-    if (next[keys[0] >> shift & mask] == count) continue;
-    std::uint32_t sum = 0;
-    for (std::uint32_t& c : next) c = std::exchange(sum, sum + c);
-    for (std::size_t i = 0; i < count; ++i) other[next[keys[i] >> shift & mask]++] = keys[i];
-    std::swap(keys, other);
-  }
 }
 
 /// Sort keys: what is wanted of the Morton code, above the row.
@@ -187,14 +161,14 @@ CellPoints sortCell(const PlanCell& cell, std::span<const std::uint64_t> packed)
   points.droppedBits = std::max(0, (3 * axisBits + rowBits - 64 + 2) / 3);
   const int drop = 3 * points.droppedBits, bits = 3 * axisBits - drop;
   const std::uint64_t inCell = axisBits == 16 ? 0xffffffffffffull : (std::uint64_t{1} << 3 * axisBits) - 1;
-  Keys keys = std::make_unique_for_overwrite<std::uint64_t[]>(count);
-  makeKeys(packed.data(), count, inCell, drop, rowBits, keys.get());
-  radixSort(keys, count, rowBits, bits);
+  std::vector<std::uint64_t> keys(count), scratch;
+  makeKeys(packed.data(), count, inCell, drop, rowBits, keys.data());
+  radixSort(keys, scratch, rowBits, bits);
   points.code.resize(count), points.row.resize(count);
   points.x.resize(count), points.y.resize(count), points.z.resize(count);
   points.level.assign(count, 0);
   if (drop == 0 && count > 0) {
-    readKeys(keys.get(), count, codeOf(packed[0]) & ~inCell, rowBits, points.code.data(), points.row.data(), points.x.data(),
+    readKeys(keys.data(), count, codeOf(packed[0]) & ~inCell, rowBits, points.code.data(), points.row.data(), points.x.data(),
              points.y.data(), points.z.data());
     return points;
   }

@@ -7,7 +7,15 @@
 #include <bit>
 #include <cmath>
 
+#include "cloud/radix_sort.h"
 #include "cloud/view_pyramid.h"
+
+// Loops of plain integer arithmetic, in the widest registers the processor has.
+#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
+#define ALIDADE_WIDEST __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#else
+#define ALIDADE_WIDEST
+#endif
 
 namespace alidade {
 
@@ -15,8 +23,8 @@ namespace {
 
 struct Candidate {
   std::uint32_t store = 0, node = 0;
-  float distance = 0;     ///< from the eye to the nearest point of the bounds, metres
-  std::int32_t step = 0;  ///< where it is cut at density 1, level steps
+  float squaredDistance = 0;  ///< from the eye to the nearest point of the bounds, square metres
+  std::int32_t step = 0;      ///< where it is cut at density 1, level steps
 };
 
 /// Above every level there is.
@@ -27,61 +35,91 @@ std::int32_t stepOf(double level) {
   return step >= kEveryStep ? kEveryStep : step <= -kEveryStep ? -kEveryStep : static_cast<std::int32_t>(step);
 }
 
-/// Wanted metres between neighbours at a distance.
-class Wanted {
+/// Where nodes of one store are cut at density 1.
+class Cuts {
  public:
-  Wanted(const Camera& camera, const SelectionOptions& options)
-      : m_options(options), m_focal(std::sqrt(std::abs(camera.intrinsics().fx * camera.intrinsics().fy))) {}
+  Cuts(const PointStore& store, const Camera& camera, const SelectionOptions& options)
+      : m_store(store), m_options(options), m_focal(std::sqrt(std::abs(camera.intrinsics().fx * camera.intrinsics().fy))),
+        m_byDistance(store.levelKind() == LevelKind::BlueNoise && options.law == DensityLaw::PointsPerPixel &&
+                     options.targetSpacingPx > 0),
+        m_levelAtOneMetre(m_byDistance ? store.levelOfSpacing(options.targetSpacingPx / m_focal) : 0) {}
 
+  /// The level step at which a node is cut.
+  std::int32_t stepOf(const CloudNode& node, double squaredDistance) const {
+    if (m_byDistance) {
+      // The usual law, without its roots: the level falls by one where the distance doubles.
+      if (!(squaredDistance > 0)) return kEveryStep;
+      return alidade::stepOf(m_levelAtOneMetre - 0.5 * std::log2(squaredDistance));
+    }
+    const double wanted = spacingAt(std::sqrt(squaredDistance));
+    if (!(wanted > 0)) return kEveryStep;
+    if (m_store.levelKind() == LevelKind::BlueNoise) return alidade::stepOf(m_store.levelOfSpacing(wanted));
+    // Coinciding points tell no spacing; they are drawn rather than lost.
+    const double share = node.spacing / wanted * (node.spacing / wanted);
+    if (!(node.spacing > 0) || !(share < 1.0)) return kEveryStep;
+    return alidade::stepOf(m_store.levelLaw().levelOfShare(share) - m_store.lawShift());
+  }
+
+ private:
+  /// Wanted metres between neighbours.
   double spacingAt(double distance) const {
     if (m_options.law == DensityLaw::PointsPerPixel) return m_options.targetSpacingPx * distance / m_focal;
     return std::sqrt(std::log1p(distance) / m_options.pointsPerSquareMetre);
   }
 
- private:
+  const PointStore& m_store;
   const SelectionOptions& m_options;
   double m_focal;
+  bool m_byDistance;
+  double m_levelAtOneMetre;
 };
 
-/// The level step at which a node is cut for a wanted spacing.
-std::int32_t wantedStep(const PointStore& store, double nodeSpacing, double wanted) {
-  if (!(wanted > 0)) return kEveryStep;
-  if (store.levelKind() == LevelKind::BlueNoise) return stepOf(store.levelOfSpacing(wanted));
-  // Coinciding points tell no spacing; they are drawn rather than lost.
-  const double share = nodeSpacing / wanted * (nodeSpacing / wanted);
-  if (!(nodeSpacing > 0) || !(share < 1.0)) return kEveryStep;
-  return stepOf(store.levelLaw().levelOfShare(share) - store.lawShift());
-}
-
-void addVisible(const PointStore& store, std::uint32_t storeIndex, const ViewPyramid& view, const Wanted* wanted,
+void addVisible(const PointStore& store, std::uint32_t storeIndex, const ViewPyramid& view, const Cuts* cuts,
                 std::vector<Candidate>& found) {
   const auto nodes = store.nodes();
   if (nodes.empty()) return;
-  std::vector<std::uint32_t> stack{0};
+  struct Visit {
+    std::uint32_t node;
+    unsigned planes;  ///< that may still cut it
+  };
+  std::vector<Visit> stack{{0, ViewPyramid::kAllPlanes}};
   while (!stack.empty()) {
-    const std::uint32_t index = stack.back();
+    Visit visit = stack.back();
     stack.pop_back();
+    const std::uint32_t index = visit.node;
     const CloudNode& node = nodes[index];
-    if (!view.maySee(node.bounds)) continue;
-    const double distance = view.distanceTo(node.bounds);
-    const std::int32_t step = wanted == nullptr ? kEveryStep : wantedStep(store, node.spacing, wanted->spacingAt(distance));
+    if (visit.planes != 0) visit.planes = view.cutBy(node.bounds, visit.planes);
+    if (visit.planes == ViewPyramid::kOutside) continue;
+    const double squaredDistance = view.squaredDistanceTo(node.bounds);
+    const std::int32_t step = cuts == nullptr ? kEveryStep : cuts->stepOf(node, squaredDistance);
     // What lies below is no nearer and of no lower level.
     if (store.levelKind() == LevelKind::BlueNoise && step <= store.lowestStepBelow(index)) continue;
     // No deeper than there are points here: all of it is thinned from the first step of the slider on.
     const std::int32_t deepest = store.highestStepBelow(index);
-    if (node.count > 0) found.push_back({storeIndex, index, static_cast<float>(distance), std::min(step, deepest)});
-    for (std::uint32_t c = 0; c < node.childCount; ++c) stack.push_back(static_cast<std::uint32_t>(node.firstChild) + c);
+    if (node.count > 0) found.push_back({storeIndex, index, static_cast<float>(squaredDistance), std::min(step, deepest)});
+    for (std::uint32_t c = 0; c < node.childCount; ++c) stack.push_back({static_cast<std::uint32_t>(node.firstChild) + c, visit.planes});
   }
 }
 
+/// Distances are not negative: their bits order as they do. Those of equal distance stay in the order of their tree.
 void sortFrontToBack(std::vector<Candidate>& candidates) {
-  std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
-    if (a.distance != b.distance) return a.distance < b.distance;
-    return a.store != b.store ? a.store < b.store : a.node < b.node;
-  });
+  std::vector<std::uint64_t> keys(candidates.size());
+  for (std::size_t i = 0; i < keys.size(); ++i) keys[i] = std::uint64_t{std::bit_cast<std::uint32_t>(candidates[i].squaredDistance)} << 32 | i;
+  std::vector<std::uint64_t> scratch;
+  radixSort(keys, scratch, 32, 31);
+  std::vector<Candidate> sorted;
+  sorted.reserve(candidates.size());
+  for (const std::uint64_t key : keys) sorted.push_back(candidates[key & 0xffffffff]);
+  candidates.swap(sorted);
 }
 
 using Stores = std::span<const PointStore* const>;
+
+/// Adds a table's own counts, step by step, to a histogram.
+ALIDADE_WIDEST void addTo(std::uint64_t* histogram, const std::uint32_t* cumulative, std::size_t steps) {
+  histogram[0] += cumulative[0];
+  for (std::size_t i = 1; i < steps; ++i) histogram[i] += cumulative[i] - cumulative[i - 1];
+}
 
 /// How many points are drawn where all levels are lowered by delta steps: a histogram of the candidates'
 /// points by how far below their cut they lie, so that the count can be solved for delta.
@@ -96,14 +134,8 @@ class CountByDelta {
       if (drawn <= 0) continue;
       const auto reach = static_cast<std::size_t>(above + drawn);
       if (m_below.size() < reach) m_below.insert(m_below.begin(), reach - m_below.size(), 0);
-      std::uint64_t* out = m_below.data() + (m_below.size() - reach);
-      std::uint32_t before = 0;
-      for (std::int32_t i = 0; i < drawn; ++i) {
-        const std::uint32_t up = levels.cumulative[static_cast<std::size_t>(i)];
-        out[i] += up - before;
-        before = up;
-      }
-      m_total += before;
+      addTo(m_below.data() + (m_below.size() - reach), levels.cumulative.data(), static_cast<std::size_t>(drawn));
+      m_total += levels.cumulative[static_cast<std::size_t>(drawn) - 1];
     }
   }
 
@@ -151,9 +183,11 @@ std::vector<Selection> selectFrom(Stores stores, const Camera& camera, const Rig
   const double density = std::clamp(options.density, 0.0, 1.0);
   if (!(density > 0.0) || camera.width() <= 0 || !cameraFromWorld.isFinite()) return std::vector<Selection>(stores.size());
   const ViewPyramid view(camera, cameraFromWorld);
-  const Wanted wanted(camera, options);
   std::vector<Candidate> candidates;
-  for (std::uint32_t s = 0; s < stores.size(); ++s) addVisible(*stores[s], s, view, &wanted, candidates);
+  for (std::uint32_t s = 0; s < stores.size(); ++s) {
+    const Cuts cuts(*stores[s], camera, options);
+    addVisible(*stores[s], s, view, &cuts, candidates);
+  }
   sortFrontToBack(candidates);
   if (options.threshold == LevelThreshold::Uniform) {
     std::int32_t most = -kEveryStep;

@@ -38,19 +38,18 @@ ViewPyramid::ViewPyramid(const Camera& camera, const RigidTransform& cameraFromW
   if (!std::isfinite(reach) && !whole) m_planeCount = 1;
 }
 
-bool ViewPyramid::maySee(const Bounds& bounds) const {
-  const glm::dvec3 low = bounds.min - m_eye, high = bounds.max - m_eye;
-  for (std::size_t i = 0; i < m_planeCount; ++i) {
-    // The corner that lies farthest along the normal.
-    const glm::dvec3& n = m_planes[i];
-    const double most = n.x * (n.x > 0 ? high.x : low.x) + n.y * (n.y > 0 ? high.y : low.y) + n.z * (n.z > 0 ? high.z : low.z);
-    if (most < 0.0) return false;
+unsigned ViewPyramid::cutBy(const Bounds& bounds, unsigned planes) const {
+  const glm::dvec3 middle = 0.5 * (bounds.min + bounds.max) - m_eye, half = 0.5 * (bounds.max - bounds.min);
+  unsigned cutting = 0;
+  for (unsigned i = 0; i < m_planeCount; ++i) {
+    if ((planes >> i & 1) == 0) continue;
+    const double at = glm::dot(m_planes[i], middle), reach = glm::dot(glm::abs(m_planes[i]), half);
+    // The products round: what touches a plane counts as cut.
+    const double slack = 1e-12 * (glm::abs(m_planes[i].x * middle.x) + glm::abs(m_planes[i].y * middle.y) + glm::abs(m_planes[i].z * middle.z) + reach);
+    if (at + reach < -slack) return kOutside;
+    if (at - reach <= slack) cutting |= 1u << i;
   }
-  return true;
-}
-
-double ViewPyramid::distanceTo(const Bounds& bounds) const {
-  return glm::length(glm::clamp(m_eye, bounds.min, bounds.max) - m_eye);
+  return cutting;
 }
 
 }  // namespace alidade

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 
 #include <glm/glm.hpp>
 
@@ -20,10 +21,19 @@ class ViewPyramid {
   ViewPyramid(const Camera& camera, const RigidTransform& cameraFromWorld);
 
   const glm::dvec3& eye() const { return m_eye; }
-  /// False only where no point of the box can fall into the picture.
-  bool maySee(const Bounds& bounds) const;
+  /// All planes, for cutBy.
+  static constexpr unsigned kAllPlanes = 31;
+  /// Lies outside what the lens sees.
+  static constexpr unsigned kOutside = 32;
+  /// Which of `planes` cut the box, as bits; kOutside only where no point of it can fall into the picture. What
+  /// does not cut a box cuts none inside it.
+  unsigned cutBy(const Bounds& bounds, unsigned planes) const;
   /// From the eye to the nearest point of the box, metres; 0 inside it.
-  double distanceTo(const Bounds& bounds) const;
+  double distanceTo(const Bounds& bounds) const { return std::sqrt(squaredDistanceTo(bounds)); }
+  double squaredDistanceTo(const Bounds& bounds) const {
+    const glm::dvec3 apart = glm::max(glm::max(bounds.min - m_eye, m_eye - bounds.max), glm::dvec3(0.0));
+    return glm::dot(apart, apart);
+  }
 
  private:
   glm::dvec3 m_eye{0};
