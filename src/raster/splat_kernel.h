@@ -6,6 +6,7 @@
 #include <cstdint>
 
 #include "camera/lens_kernel.h"
+#include "raster/reciprocal.h"
 
 namespace alidade {
 
@@ -28,6 +29,9 @@ struct SplatView {
   float sizeTimesDepth, smallest, largest;
   bool onePixel;  ///< every footprint is one pixel
   bool round;
+  Reciprocal reciprocal;
+  float twoOverR, overRSquared;          ///< of MultiplyAdd
+  float pixelsPerRadius, pictureRadius;  ///< what decides for it, see splat_pass.cpp
 };
 
 /// What is kept beside the depth in a 64-bit pixel.
@@ -47,7 +51,7 @@ struct PlaceInPixel {
         v((static_cast<float>(payload & 63) - 31.5f) / 64.0f) {}
 };
 
-/// One thread's pixels, width × height and one spare. Depth is a positive float's bits, which order
+/// One thread's pixels, width × height. Depth is a positive float's bits, which order
 /// as unsigned integers do; in 64-bit pixels it stands above the payload, so that the nearest wins
 /// and equal depths are settled by the payload, whatever the order of drawing.
 struct SplatTarget {

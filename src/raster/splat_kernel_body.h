@@ -7,6 +7,10 @@
 #include <cmath>
 #include <cstring>
 
+#if defined(__SSE__)
+#include <immintrin.h>
+#endif
+
 #include "raster/splat_kernel.h"
 
 namespace alidade {
@@ -37,6 +41,31 @@ struct Projected {
   Words colour;
 };
 
+ALIDADE_LENS_INLINE Floats estimatedReciprocal(const Floats& z) {
+#if ALIDADE_SPLAT_LANES == 16
+  return _mm512_rcp14_ps(z);
+#elif ALIDADE_SPLAT_LANES == 8
+  return _mm256_rcp_ps(z);
+#elif defined(__SSE__)
+  return _mm_rcp_ps(z);
+#else
+  return 1.0f / z;
+#endif
+}
+
+ALIDADE_LENS_INLINE Floats reciprocalOf(const SplatView& view, const Floats& z) {
+  switch (view.reciprocal) {
+    case Reciprocal::Newton: {
+      const Floats estimate = estimatedReciprocal(z);
+      return estimate * (2.0f - z * estimate);
+    }
+    case Reciprocal::MultiplyAdd:
+      return view.twoOverR - z * view.overRSquared;
+    default:
+      return 1.0f / z;
+  }
+}
+
 template <LensKind kind>
 ALIDADE_LENS_INLINE Projected project(const SplatView& view, const std::uint16_t* points) {
   Words first, second;
@@ -52,7 +81,7 @@ ALIDADE_LENS_INLINE Projected project(const SplatView& view, const std::uint16_t
   const Floats px = (m[0] * nx + m[1] * ny) + (m[2] * nz + view.t[0]);
   const Floats py = (m[3] * nx + m[4] * ny) + (m[5] * nz + view.t[1]);
   const Floats pz = (m[6] * nx + m[7] * ny) + (m[8] * nz + view.t[2]);
-  const Floats inverse = 1.0f / pz;
+  const Floats inverse = reciprocalOf(view, pz);
   const Floats x = px * inverse;
   const Floats y = py * inverse;
   Floats xd, yd;
@@ -104,38 +133,21 @@ ALIDADE_LENS_INLINE void put(const SplatTarget& target, std::size_t at, std::uin
   }
 }
 
-template <bool packed>
-ALIDADE_LENS_INLINE void drawPixels(const SplatView& view, const Projected& p, const SplatTarget& target,
-                                    std::uint32_t place) {
-  const Floats u = p.u + 0.5f, v = p.v + 0.5f;
-  const Ints inside = p.valid & (u >= 0.0f) & (u < static_cast<float>(view.width)) & (v >= 0.0f) &
-                      (v < static_cast<float>(view.height));
-  const Floats zero = {};
-  const Ints column = __builtin_convertvector(inside ? u : zero, Ints);
-  const Ints row = __builtin_convertvector(inside ? v : zero, Ints);
-  // What is not drawn goes to the spare pixel: no branch a lane.
-  const Ints spare = (column & 0) + view.width * view.height;
-  const Ints at = inside ? row * view.width + column : spare;
-  alignas(64) std::int32_t offset[kLanes];
-  alignas(64) std::uint32_t depth[kLanes];
-  std::memcpy(offset, &at, sizeof at);
-  std::memcpy(depth, &p.z, sizeof p.z);
-  if constexpr (packed) {
-    alignas(64) std::uint32_t payload[kLanes];
-    Words words = payloadOf(target, place, p.colour);
-    if (target.payload == SplatPayload::Place) {
-      const Floats inU = inside ? u - __builtin_convertvector(column, Floats) : zero;
-      const Floats inV = inside ? v - __builtin_convertvector(row, Floats) : zero;
-      const Ints code =
-          __builtin_convertvector(64.0f * inU, Ints) * 64 + __builtin_convertvector(64.0f * inV, Ints);
-      words += reinterpret_cast<const Words&>(code);
-    }
-    std::memcpy(payload, &words, sizeof words);
-    for (int i = 0; i < kLanes; ++i) put<true>(target, offset[i], depth[i], payload[i]);
-  } else {
-    for (int i = 0; i < kLanes; ++i) put<false>(target, offset[i], depth[i], 0);
-  }
+/// Where in its pixel a point fell, as PlaceInPixel reads it; u and v half a pixel on, so that floors name
+/// the pixel. Means nothing for lanes outside the picture.
+ALIDADE_LENS_INLINE Words placeInPixel(const Floats& u, const Floats& v, const Ints& column, const Ints& row) {
+  const Floats inU = u - __builtin_convertvector(column, Floats), inV = v - __builtin_convertvector(row, Floats);
+  const Ints code = __builtin_convertvector(64.0f * inU, Ints) * 64 + __builtin_convertvector(64.0f * inV, Ints);
+  return reinterpret_cast<Words>(code);
 }
+
+}  // namespace
+}  // namespace alidade
+
+#include "raster/splat_queue.h"
+
+namespace alidade {
+namespace {
 
 /// The pixels whose centres lie within `size` of the point: a square, or a disc within it.
 template <bool packed>
@@ -178,9 +190,10 @@ ALIDADE_LENS_INLINE void drawFootprints(const SplatView& view, const Projected& 
 template <LensKind kind, bool packed, bool onePixel>
 void drawRun(const SplatView& view, const std::uint16_t* points, std::uint32_t count,
              const SplatTarget& target) {
+  PixelQueue<packed> queue(target);
   const auto drawLanes = [&](const Projected& p, std::uint32_t place) __attribute__((always_inline)) {
     if constexpr (onePixel) {
-      drawPixels<packed>(view, p, target, place);
+      drawPixels<packed>(view, p, queue, target, place);
     } else {
       drawFootprints<packed>(view, p, target, place);
     }

@@ -10,6 +10,7 @@
 #include <mutex>
 #include <new>
 #include <numbers>
+#include <utility>
 
 #include "base/parallel.h"
 
@@ -88,7 +89,7 @@ void drawPlanes(std::span<const SplatRun> runs, int width, int height, SplatPayl
                 const std::function<void(const SplatPlanes<Pixel>&, std::size_t, std::size_t)>& merge) {
   const SplatKernel& kernel = splatKernel();
   const std::size_t pixels = static_cast<std::size_t>(width) * height;
-  const std::size_t bytes = (pixels + 1) * sizeof(Pixel);
+  const std::size_t bytes = pixels * sizeof(Pixel);
   std::vector<std::unique_ptr<SplatScratch>> scratch(workerCount());
   const std::vector<Task> tasks = tasksOf(runs);
   parallelFor(tasks.size(), 1, [&](std::size_t first, std::size_t last, int worker) {
@@ -139,14 +140,68 @@ double surelyInsideRadius(const Camera& camera) {
   return 0.0;
 }
 
-/// True where a point of the box may lie beyond `radius` on the image plane: the radius is largest at
-/// a corner, once all are before the eye.
-bool reachesBeyond(double radius, const Bounds& bounds, const RigidTransform& cameraFromWorld) {
+/// Largest distance from the axis on the image plane, infinite where the box reaches the eye's plane: the
+/// radius is largest at a corner, once all are before the eye.
+double radiusOf(const Bounds& bounds, const RigidTransform& cameraFromWorld) {
+  double radius = 0.0;
   for (int i = 0; i < 8; ++i) {
     const glm::dvec3 corner = cameraFromWorld * bounds.corner(i);
-    if (!(corner.z > 0.0) || glm::length(glm::dvec2(corner)) > radius * corner.z) return true;
+    if (!(corner.z > 0.0)) return std::numeric_limits<double>::infinity();
+    radius = std::max(radius, glm::length(glm::dvec2(corner)) / corner.z);
   }
-  return false;
+  return radius;
+}
+
+/// Depths along the axis that points of the box can have, before the eye and behind it.
+std::pair<double, double> depthRange(const Bounds& bounds, const RigidTransform& cameraFromWorld) {
+  const glm::dmat3 rotation = cameraFromWorld.rotationMatrix();
+  const glm::dvec3 axis(rotation[0][2], rotation[1][2], rotation[2][2]);
+  const double centre = glm::dot(axis, bounds.centre() - cameraFromWorld.centre());
+  const double half = glm::dot(glm::abs(axis), 0.5 * bounds.size());
+  return {centre - half, centre + half};
+}
+
+/// True where a point of the box may lie beyond `radius` on the image plane.
+bool reachesBeyond(double radius, const Bounds& bounds, const RigidTransform& cameraFromWorld) {
+  return !(radiusOf(bounds, cameraFromWorld) <= radius);
+}
+
+/// Pixels that a point moves for each part that 1/z is off and each unit of its radius on the image plane: the
+/// focal length times the most that the lens stretches a radius, over the picture.
+double pixelsPerRadius(const Camera& camera) {
+  constexpr int kSteps = 16;
+  constexpr double kPart = 1e-4;
+  double most = 0.0;
+  for (int row = 0; row <= kSteps; ++row) {
+    for (int column = 0; column <= kSteps; ++column) {
+      const auto ray = camera.unproject({camera.width() * (column / double(kSteps)) - 0.5,
+                                         camera.height() * (row / double(kSteps)) - 0.5});
+      if (!ray || !(ray->z > 0.0)) continue;
+      const glm::dvec2 at = glm::dvec2(*ray) / ray->z;
+      const double radius = glm::length(at);
+      if (radius < 1e-6) continue;
+      const glm::dvec2 moved = camera.projectUnchecked({at * (1.0 - kPart), 1.0}) - camera.projectUnchecked({at, 1.0});
+      most = std::max(most, glm::length(moved) / (kPart * radius));
+    }
+  }
+  return 1.02 * most;  // between the samples
+}
+
+/// C's multiply-add where the node allows it. In depths [R - h, R + h] the relative error of 2/R - z/R² is at
+/// most (h/R)², which moves a pixel along its radius.
+void chooseReciprocal(SplatView& view, const Bounds& bounds, const RigidTransform& cameraFromWorld,
+                      double allowedPx) {
+  view.reciprocal = Reciprocal::Division;
+  const auto [nearest, farthest] = depthRange(bounds, cameraFromWorld);
+  if (!(nearest > 0.0)) return;
+  const double middle = 0.5 * (nearest + farthest);
+  const double error = std::pow((farthest - middle) / middle, 2);
+  // What lies outside the picture may move as it likes, as long as it does not come in.
+  const double radius = std::min<double>(radiusOf(bounds, cameraFromWorld), view.pictureRadius);
+  if (!(view.pixelsPerRadius * radius * error <= allowedPx)) return;
+  view.reciprocal = Reciprocal::MultiplyAdd;
+  view.twoOverR = static_cast<float>(2.0 / middle);
+  view.overRSquared = static_cast<float>(1.0 / (middle * middle));
 }
 
 }  // namespace
@@ -158,10 +213,7 @@ SplatScratch::~SplatScratch() {
 }
 
 double nearestDepth(const Bounds& bounds, const RigidTransform& cameraFromWorld) {
-  const glm::dmat3 rotation = cameraFromWorld.rotationMatrix();
-  const glm::dvec3 axis(rotation[0][2], rotation[1][2], rotation[2][2]);
-  const double centre = glm::dot(axis, bounds.centre()) + cameraFromWorld.translation.z;
-  return std::max(0.0, centre - glm::dot(glm::abs(axis), 0.5 * bounds.size()));
+  return std::max(0.0, depthRange(bounds, cameraFromWorld).first);
 }
 
 SplatView baseView(const Camera& camera, const SplatOptions& options) {
@@ -186,6 +238,11 @@ SplatView baseView(const Camera& camera, const SplatOptions& options) {
       static_cast<float>(std::max(1.0, options.fixedSize ? options.pointSize : options.minimumSizePx));
   view.largest =
       static_cast<float>(std::max<double>(view.smallest, options.fixedSize ? 1.0 : options.maximumSizePx));
+  view.reciprocal = options.reciprocal;
+  if (options.reciprocal == Reciprocal::MultiplyAdd) {
+    view.pixelsPerRadius = static_cast<float>(pixelsPerRadius(camera));
+    view.pictureRadius = static_cast<float>(camera.imageRadius());
+  }
   return view;
 }
 
@@ -207,6 +264,8 @@ SplatRun makeRun(const PointStore& store, const SelectedRange& range, const Rigi
   }
   run.view.checkDomain =
       base.checkDomain && reachesBeyond(std::sqrt(base.surelyInsideSquared), node.bounds, cameraFromWorld);
+  if (base.reciprocal == Reciprocal::MultiplyAdd)
+    chooseReciprocal(run.view, node.bounds, cameraFromWorld, options.reciprocalErrorPx);
   const double focal = std::sqrt(std::abs(static_cast<double>(base.fx) * base.fy));
   const double width = options.worldSizeM > 0 ? options.worldSizeM : range.spacing;
   const double sizeTimesDepth = options.fixedSize ? 0.0 : options.pointSize * width * focal;

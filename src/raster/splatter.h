@@ -12,6 +12,7 @@
 #include "cloud/point_store.h"
 #include "cloud/selection.h"
 #include "geometry/rigid_transform.h"
+#include "raster/reciprocal.h"
 
 namespace alidade {
 
@@ -31,6 +32,9 @@ struct SplatOptions {
   /// Every point this wide in the world, metres, before `pointSize`: Zhang (2020), whose s n r H / (z tan(fov/2))
   /// is s w f / z with w = n r H / (f tan(fov/2)). 0: as wide as its neighbours are apart.
   double worldSizeM = 0;
+  /// MultiplyAdd: in nodes where it moves no point by more than `reciprocalErrorPx` (Vázquez and Antelo).
+  Reciprocal reciprocal = Reciprocal::Division;
+  double reciprocalErrorPx = 0.05;
   bool fixedSize = false;  ///< Gantner (2018): pointSize is the size in pixels for every point
 };
 

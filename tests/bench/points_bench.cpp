@@ -46,6 +46,12 @@ void splatSite(benchmark::State& state, const SplatOptions& options) {
 void splat_depth_20M(benchmark::State& state) {
   splatSite(state, {.maximumSizePx = 1.0});
 }
+void splat_depth_newton_20M(benchmark::State& state) {
+  splatSite(state, {.maximumSizePx = 1.0, .reciprocal = Reciprocal::Newton});
+}
+void splat_depth_multiply_add_20M(benchmark::State& state) {
+  splatSite(state, {.maximumSizePx = 1.0, .reciprocal = Reciprocal::MultiplyAdd});
+}
 void splat_colour_20M(benchmark::State& state) {
   splatSite(state, {.colour = true, .maximumSizePx = 1.0});
 }
@@ -188,6 +194,8 @@ void build_store_5M(benchmark::State& state) {
 }
 
 BENCHMARK(splat_depth_20M)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(splat_depth_newton_20M)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(splat_depth_multiply_add_20M)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(splat_colour_20M)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(splat_colour_ids_20M)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(splat_colour_footprints_20M)->Unit(benchmark::kMillisecond)->UseRealTime();
