@@ -110,6 +110,16 @@ void VaryingCamera::distortionColumns(double x, double y, glm::dvec2* columns) c
       columns[15] = {x, 0}, columns[16] = {y, 0};
       return;
     }
+    case CameraModel::BrownSkewed: {
+      double power = 1;
+      for (int i = 0; i < 4; ++i) columns[i] = byK(power *= r2);
+      columns[4] = byP1 * growth, columns[5] = byP2 * growth;
+      const glm::dvec2 decentred = d.p1 * byP1 + d.p2 * byP2;
+      columns[6] = decentred * r2, columns[7] = decentred * r4;
+      for (int i = 0; i < 8; ++i) columns[i].x += d.imageSkew * columns[i].y;
+      columns[8] = {flat(x, y).y, 0};
+      return;
+    }
     default: break;
   }
   const int count = m_count - 4;

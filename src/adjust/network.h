@@ -179,6 +179,17 @@ struct AdjustedPose {
   int observations = 0, outliers = 0;
 };
 
+/// How well a calibration is known.
+struct CameraAccuracy {
+  std::vector<double> covariance;  ///< of its parameters in the model's order, row by row, locked ones 0; empty: none was free
+  /// Correlation of the (first) focal length with the way of the camera along its axis, for each of its frames with a
+  /// pose of its own; 1: the two cannot be told apart.
+  std::vector<double> focalWithDistance;
+
+  double std(int parameter) const;
+  double correlation(int a, int b) const;  ///< 0 where one is locked
+};
+
 /// A known point that took no part: where the adjusted rays of two pictures or more meet, against its coordinates.
 struct CheckPoint {
   int point = -1;
@@ -196,6 +207,7 @@ struct NetworkSummary {
   std::vector<AdjustedPose> poses; ///< the start where not converged
   std::vector<RigidTransform> cameraFromBody;  ///< of each mount
   std::vector<Intrinsics> cameras;
+  std::vector<CameraAccuracy> cameraAccuracy;  ///< of each camera; empty without covariance
   std::vector<double> clockOffsetSecs, clockStdSecs;  ///< of each trajectory
   std::vector<glm::dvec3> points;  ///< NaN where a tie point could not be had
   std::vector<NetworkResidual> residuals;

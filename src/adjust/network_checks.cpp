@@ -200,11 +200,11 @@ std::string unknownName(const Network& network, const NetworkLayout& layout, int
                       : fmt::format("the rotation about {} of {}", axis[column - 3], mount);
   }
   if (const int i = of(layout.cameraBlock); i >= 0) {
-    const VaryingCamera camera(network.cameras[i].intrinsics);
-    const int beyond = column - camera.focalCount();
+    const CameraModel model = network.cameras[i].intrinsics.model;
+    const int beyond = column - VaryingCamera(network.cameras[i].intrinsics).focalCount();
     const std::string what = beyond < 0 ? "the focal length"
                              : beyond < 2 ? fmt::format("the principal point's {}", axis[beyond])
-                                          : fmt::format("distortion parameter {}", beyond - 1);
+                                          : fmt::format("the distortion's {}", parameterNames(model)[column]);
     return fmt::format("{} of {}", what, quoted("camera", network.cameras[i].name, i));
   }
   return fmt::format("the clock offset of trajectory {}", of(layout.clockBlock) + 1);

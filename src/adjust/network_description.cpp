@@ -88,6 +88,28 @@ void describePoses(const NetworkTerms& terms, const NormalSystem& normals, Netwo
   }
 }
 
+void describeCameras(const NetworkTerms& terms, const NetworkState& state, const NormalSystem& normals,
+                     NetworkSummary& summary) {
+  const Network& network = terms.network();
+  const NetworkLayout& layout = terms.layout();
+  summary.cameraAccuracy.resize(network.cameras.size());
+  for (std::size_t i = 0; i < network.cameras.size(); ++i) {
+    if (layout.cameraBlock[i] < 0) continue;
+    const Eigen::MatrixXd covariance = normals.covariance({layout.cameraBlock[i]});
+    summary.cameraAccuracy[i].covariance.assign(covariance.data(), covariance.data() + covariance.size());
+  }
+  for (const NetworkFrame& frame : network.frames) {
+    const int pose = layout.poseBlock[frame.pose], camera = layout.cameraBlock[frame.camera];
+    if (pose < 0 || camera < 0 || frame.mount >= 0) continue;
+    const Eigen::MatrixXd both = normals.covariance({pose, camera});
+    const glm::dvec3 axis = glm::conjugate(state.poses[frame.pose].rotation) * glm::dvec3(0, 0, 1);
+    const Eigen::Vector3d along(axis.x, axis.y, axis.z);
+    const double product = along.dot(both.topLeftCorner<3, 3>() * along) * both(6, 6);
+    if (product > 0)
+      summary.cameraAccuracy[frame.camera].focalWithDistance.push_back(along.dot(both.block<3, 1>(0, 6)) / std::sqrt(product));
+  }
+}
+
 /// Pairs of unknowns that a frame hangs on with a correlation above 0.95.
 void describeCorrelations(const NetworkTerms& terms, const NormalSystem& normals, NetworkSummary& summary) {
   constexpr double high = 0.95;
@@ -238,6 +260,7 @@ NetworkSummary describe(const NetworkTerms& terms, const NetworkState& state, co
   describeCheckPoints(terms, state, summary);
   if (!normals) return summary;
   describePoses(terms, *normals, summary);
+  describeCameras(terms, state, *normals, summary);
   describeCorrelations(terms, *normals, summary);
   for (std::size_t i = 0; i < summary.clockStdSecs.size(); ++i)
     if (terms.layout().clockBlock[i] >= 0)

@@ -16,6 +16,17 @@ int NetworkSummary::outlierCount() const {
   return static_cast<int>(std::count_if(residuals.begin(), residuals.end(), [](const auto& r) { return r.outlier; }));
 }
 
+double CameraAccuracy::std(int parameter) const {
+  const auto n = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(covariance.size()))));
+  return std::sqrt(std::max(0.0, covariance[static_cast<std::size_t>(parameter) * (n + 1)]));
+}
+
+double CameraAccuracy::correlation(int a, int b) const {
+  const auto n = static_cast<std::size_t>(std::lround(std::sqrt(static_cast<double>(covariance.size()))));
+  const double product = std(a) * std(b);
+  return product > 0 ? covariance[static_cast<std::size_t>(a) * n + static_cast<std::size_t>(b)] / product : 0.0;
+}
+
 RigidTransform cameraFromWorld(const Network& network, const NetworkSummary& summary, int frame) {
   const NetworkFrame& f = network.frames[frame];
   const RigidTransform& body = summary.poses[f.pose].bodyFromWorld;

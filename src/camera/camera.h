@@ -41,6 +41,8 @@ std::optional<CameraModel> parseCameraModel(std::string_view name);
 
 /// Number of parameters that the model writes, in the order of the comments above.
 int parameterCount(CameraModel model);
+/// What they are called: "fx", "cy", "k1", "q2" … (see Distortion); "f" where the model has one focal length.
+std::vector<std::string> parameterNames(CameraModel model);
 
 /// What a calibration gives. Pixels in OpenCV's origin: (0,0) is the *centre* of the top-left pixel.
 struct Intrinsics {

@@ -78,6 +78,22 @@ int parameterCount(CameraModel model) {
   return rowOf(model).parameters;
 }
 
+std::vector<std::string> parameterNames(CameraModel model) {
+  std::vector<std::string> names{"f"};
+  if (!hasOneFocalLength(model)) names = {"fx", "fy"};
+  names.insert(names.end(), {"cx", "cy"});
+  Distortion d;
+  const std::pair<const double*, const char*> named[] = {
+      {&d.k[0], "k1"}, {&d.k[1], "k2"}, {&d.k[2], "k3"}, {&d.k[3], "k4"},   {&d.k[4], "k5"},    {&d.k[5], "k6"},
+      {&d.q[0], "q1"}, {&d.q[1], "q2"}, {&d.q[2], "q3"}, {&d.p1, "p1"},     {&d.p2, "p2"},      {&d.t[0], "t3"},
+      {&d.t[1], "t4"}, {&d.t[2], "t5"}, {&d.t[3], "t6"}, {&d.s[0], "s1"},   {&d.s[1], "s2"},    {&d.s[2], "s3"},
+      {&d.s[3], "s4"}, {&d.shear, "shear"}, {&d.skew, "skew"}, {&d.tauX, "tauX"}, {&d.tauY, "tauY"}, {&d.imageSkew, "imageSkew"}};
+  for (const double* slot : slots(model, d))
+    for (const auto& [at, name] : named)
+      if (at == slot) names.emplace_back(name);
+  return names;
+}
+
 std::vector<double> Intrinsics::parameters() const {
   std::vector<double> flat{fx};
   if (!hasOneFocalLength(model)) flat.push_back(fy);
