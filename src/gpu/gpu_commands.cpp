@@ -51,18 +51,26 @@ void moveImage(VkCommandBuffer commands, GpuImage::State& image, const ImageUse&
   image.access = use.access;
 }
 
-/// Lets the host read what copies or compute wrote.
-void handToHost(VkCommandBuffer commands, VkPipelineStageFlags2 stage, VkAccessFlags2 access) {
+/// Makes what one stage wrote seen by another.
+void handOver(VkCommandBuffer commands, VkPipelineStageFlags2 stage, VkAccessFlags2 access,
+              VkPipelineStageFlags2 toStage, VkAccessFlags2 toAccess) {
   auto barrier = stamped<VkMemoryBarrier2>(VK_STRUCTURE_TYPE_MEMORY_BARRIER_2);
   barrier.srcStageMask = stage;
   barrier.srcAccessMask = access;
-  barrier.dstStageMask = VK_PIPELINE_STAGE_2_HOST_BIT;
-  barrier.dstAccessMask = VK_ACCESS_2_HOST_READ_BIT;
+  barrier.dstStageMask = toStage;
+  barrier.dstAccessMask = toAccess;
   auto dependency = stamped<VkDependencyInfo>(VK_STRUCTURE_TYPE_DEPENDENCY_INFO);
   dependency.memoryBarrierCount = 1;
   dependency.pMemoryBarriers = &barrier;
   vkCmdPipelineBarrier2(commands, &dependency);
 }
+
+/// Lets the host read what copies or compute wrote.
+void handToHost(VkCommandBuffer commands, VkPipelineStageFlags2 stage, VkAccessFlags2 access) {
+  handOver(commands, stage, access, VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);
+}
+
+constexpr VkAccessFlags2 kStorage = VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
 
 VkBufferImageCopy wholeImage(const GpuImage::State& image) {
   VkBufferImageCopy region{};
@@ -109,6 +117,20 @@ void GpuCommands::readBack(const GpuImage& from, const GpuBuffer& to) {
   const VkBufferImageCopy region = wholeImage(from.state());
   vkCmdCopyImageToBuffer(m_state.commands, from.state().image.get(), VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL,
                          to.state().buffer.get(), 1, &region);
+  handToHost(m_state.commands, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT);
+}
+
+void GpuCommands::fill(const GpuBuffer& buffer, std::uint32_t word) {
+  vkCmdFillBuffer(m_state.commands, buffer.state().buffer.get(), 0, VK_WHOLE_SIZE, word);
+  handOver(m_state.commands, VK_PIPELINE_STAGE_2_CLEAR_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT,
+           VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, kStorage);
+}
+
+void GpuCommands::copy(const GpuBuffer& from, const GpuBuffer& to) {
+  handOver(m_state.commands, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT,
+           VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_READ_BIT);
+  const VkBufferCopy region{0, 0, to.size()};
+  vkCmdCopyBuffer(m_state.commands, from.state().buffer.get(), to.state().buffer.get(), 1, &region);
   handToHost(m_state.commands, VK_PIPELINE_STAGE_2_COPY_BIT, VK_ACCESS_2_TRANSFER_WRITE_BIT);
 }
 

@@ -39,6 +39,11 @@ class GpuCommands {
   /// Whole image into the start of a buffer; the host may read it after run() returned.
   void readBack(const GpuImage& from, const GpuBuffer& to);
 
+  /// The same word everywhere in a DeviceStorage buffer.
+  void fill(const GpuBuffer& buffer, std::uint32_t word);
+  /// The start of a DeviceStorage buffer into the whole of a Readback one; see readBack.
+  void copy(const GpuBuffer& from, const GpuBuffer& to);
+
   /// Readies an image for sampling in what follows.
   void toSampled(const GpuImage& image);
 

@@ -210,6 +210,15 @@ Result<Candidate> pickDevice(VkInstance instance) {
               "Update the driver, or install mesa-vulkan-drivers");
 }
 
+bool offersAtomics64(VkPhysicalDevice device) {
+  auto features12 =
+      stamped<VkPhysicalDeviceVulkan12Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES);
+  auto features = stamped<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2);
+  features.pNext = &features12;
+  vkGetPhysicalDeviceFeatures2(device, &features);
+  return features.features.shaderInt64 && features12.shaderBufferInt64Atomics;
+}
+
 Result<void> makeDevice(GpuDevice::Core& core) {
   const float priority = 1;
   auto queue = stamped<VkDeviceQueueCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_QUEUE_CREATE_INFO);
@@ -221,9 +230,15 @@ Result<void> makeDevice(GpuDevice::Core& core) {
   features13.dynamicRendering = VK_TRUE;
   features13.synchronization2 = VK_TRUE;
   features13.maintenance4 = VK_TRUE;  // glslc writes LocalSizeId; every 1.3 device has it
+  auto features12 =
+      stamped<VkPhysicalDeviceVulkan12Features>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_VULKAN_1_2_FEATURES);
+  core.atomics64 = offersAtomics64(core.physical);
+  features12.shaderBufferInt64Atomics = core.atomics64;
+  features13.pNext = &features12;
   auto features = stamped<VkPhysicalDeviceFeatures2>(VK_STRUCTURE_TYPE_PHYSICAL_DEVICE_FEATURES_2);
   features.pNext = &features13;
   features.features.independentBlend = VK_TRUE;
+  features.features.shaderInt64 = core.atomics64;
   auto info = stamped<VkDeviceCreateInfo>(VK_STRUCTURE_TYPE_DEVICE_CREATE_INFO);
   info.pNext = &features;
   info.queueCreateInfoCount = 1;
@@ -326,6 +341,12 @@ int GpuDevice::validationMessageCount() const {
 }
 int GpuDevice::maximumImageSize() const {
   return static_cast<int>(std::min<std::uint32_t>(m_core->properties.limits.maxImageDimension2D, 32768));
+}
+bool GpuDevice::hasAtomics64() const {
+  return m_core->atomics64;
+}
+std::size_t GpuDevice::maximumStorageSize() const {
+  return m_core->properties.limits.maxStorageBufferRange;
 }
 
 Result<void> GpuDevice::run(const std::function<void(GpuCommands&)>& record) {

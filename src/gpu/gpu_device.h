@@ -31,6 +31,9 @@ class GpuDevice {
   int validationMessageCount() const;  ///< warnings and errors since the device was made
   int maximumImageSize() const;        ///< pixels along an edge
 
+  bool hasAtomics64() const;           ///< 64-bit integers and atomics on them in storage buffers
+  std::size_t maximumStorageSize() const;  ///< bytes that a shader sees of one storage buffer
+
   Result<GpuBuffer> makeBuffer(GpuBufferUse use, std::size_t bytes);
   Result<GpuImage> makeImage(GpuFormat format, int width, int height);
   Result<GpuPipeline> makePipeline(const GpuGraphicsDescription& description);

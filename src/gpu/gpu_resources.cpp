@@ -79,6 +79,9 @@ VkBufferUsageFlags usageOf(GpuBufferUse use) {
       return VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT;
     case GpuBufferUse::Storage:
       return VK_BUFFER_USAGE_STORAGE_BUFFER_BIT;
+    case GpuBufferUse::DeviceStorage:
+      return VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
+             VK_BUFFER_USAGE_TRANSFER_DST_BIT;
     case GpuBufferUse::Upload:
       return VK_BUFFER_USAGE_TRANSFER_SRC_BIT;
     case GpuBufferUse::Readback:
@@ -128,16 +131,20 @@ Result<GpuBuffer> GpuDevice::makeBuffer(GpuBufferUse use, std::size_t bytes) {
   if (!buffer) return fail(buffer.error());
   VkMemoryRequirements needs{};
   vkGetBufferMemoryRequirements(device, buffer->get(), &needs);
-  auto memory =
-      m_core->allocate(needs, use == GpuBufferUse::Readback ? VK_MEMORY_PROPERTY_HOST_CACHED_BIT : 0, kHost);
+  const bool isHidden = use == GpuBufferUse::DeviceStorage;
+  const VkMemoryPropertyFlags wanted = isHidden                         ? VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT
+                                       : use == GpuBufferUse::Readback ? VK_MEMORY_PROPERTY_HOST_CACHED_BIT
+                                                                       : 0;
+  auto memory = m_core->allocate(needs, wanted, isHidden ? 0 : kHost);
   if (!memory) return fail(memory.error());
   if (const VkResult result = vkBindBufferMemory(device, buffer->get(), memory->get(), 0);
       result != VK_SUCCESS)
     return vulkanFailure("vkBindBufferMemory", result);
   void* mapped = nullptr;
-  if (const VkResult result = vkMapMemory(device, memory->get(), 0, VK_WHOLE_SIZE, 0, &mapped);
-      result != VK_SUCCESS)
-    return vulkanFailure("vkMapMemory", result);
+  if (!isHidden)
+    if (const VkResult result = vkMapMemory(device, memory->get(), 0, VK_WHOLE_SIZE, 0, &mapped);
+        result != VK_SUCCESS)
+      return vulkanFailure("vkMapMemory", result);
   state->mapped = static_cast<std::byte*>(mapped);
   state->buffer = std::move(*buffer);
   state->memory = std::move(*memory);

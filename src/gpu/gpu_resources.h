@@ -14,7 +14,8 @@ namespace alidade {
 // Handles to things on a GpuDevice: movable, freed with their last owner, and they keep their device
 // alive. An empty handle (default-made) may only be assigned to.
 
-/// Memory that both sides see. `data()` stays mapped; the device reads it from the next run() on.
+/// Memory that both sides see. `data()` stays mapped; the device reads it from the next run() on. DeviceStorage is
+/// the device's alone: no data(), filled and copied by commands.
 class GpuBuffer {
  public:
   struct State;

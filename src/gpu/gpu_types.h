@@ -15,8 +15,8 @@ enum class GpuFormat { Rgba8, Rg8, R8Uint, R32Float, R32Uint, Depth32 };
 /// Bytes of one texel.
 std::size_t bytesPerPixel(GpuFormat format);
 
-/// What a buffer is for; all are visible to the host and stay mapped.
-enum class GpuBufferUse { Vertex, Index, Uniform, Storage, Upload, Readback };
+/// What a buffer is for; all but DeviceStorage are visible to the host and stay mapped.
+enum class GpuBufferUse { Vertex, Index, Uniform, Storage, DeviceStorage, Upload, Readback };
 
 /// What a shader sees at a binding of set 0.
 enum class GpuBindingKind { Uniform, Storage, SampledNearest, SampledLinear };

@@ -100,6 +100,7 @@ struct GpuDevice::Core {
   VkQueue queue = VK_NULL_HANDLE;
   std::string name;
   bool validated = false;
+  bool atomics64 = false;
   SamplerHandle nearestSampler, linearSampler;
   CommandPoolHandle commandPool;
   VkCommandBuffer commandBuffer = VK_NULL_HANDLE;

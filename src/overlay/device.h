@@ -8,6 +8,7 @@
 
 #include "base/error.h"
 #include "overlay/draw_list.h"
+#include "raster/splat_device.h"
 
 namespace alidade {
 
@@ -26,6 +27,8 @@ class OverlayDevice {
   virtual ~OverlayDevice() = default;
   virtual std::string name() const = 0;  ///< "Vulkan: llvmpipe (LLVM 15)"
   virtual Result<Output> draw(const DrawList& list) = 0;
+  /// What draws the scans' points better than the processor; null where nothing does.
+  virtual SplatDevice* splatDevice() { return nullptr; }
 };
 
 /// A visibility buffer on the processor: every thread, the widest vectors it has (ALIDADE_SIMD=scalar|avx2

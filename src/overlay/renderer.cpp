@@ -113,7 +113,7 @@ Result<OverlayPicture> OverlayRenderer::render(const FrameDescription& frame) {
   const bool isScaled = width != frame.camera.width() || height != frame.camera.height();
   const Camera camera = isScaled ? frame.camera.scaledTo(width, height) : frame.camera;
 
-  ScanPictures scans = m_impl->scans.draw(frame, camera);
+  ScanPictures scans = m_impl->scans.draw(frame, camera, m_impl->device->splatDevice());
   DrawList list = buildDrawList(frame, camera);
   list.image = m_impl->imageFor(frame, width, height);
   const bool hides = frame.display.depthPass && scans.drawn > 0;

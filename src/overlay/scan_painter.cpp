@@ -76,7 +76,7 @@ DepthImage ScanPainter::occlusion(const FrameDescription& frame, const Camera& c
   return depth;
 }
 
-ScanPictures ScanPainter::draw(const FrameDescription& frame, const Camera& camera) {
+ScanPictures ScanPainter::draw(const FrameDescription& frame, const Camera& camera, SplatDevice* device) {
   std::erase_if(m_stylers, [&](const auto& entry) {
     return std::none_of(frame.scans.begin(), frame.scans.end(),
                         [&](const ScanLayer& scan) { return scan.points.store.get() == entry.first; });
@@ -101,7 +101,9 @@ ScanPictures ScanPainter::draw(const FrameDescription& frame, const Camera& came
         .apply(frame.display.points, PointStyler::Part::ColourAndFilter, frame.cameraFromWorld.centre(),
                layers.back().selection);
   }
-  SplatImages splats = splat(layers, camera, frame.cameraFromWorld, splatOptions(frame));
+  SplatOptions options = splatOptions(frame);
+  options.device = device;
+  SplatImages splats = splat(layers, camera, frame.cameraFromWorld, options);
   if (frame.display.points.eyeDome)
     applyEyeDome(splats.depth, {frame.display.points.eyeDomeStrength, 1}, splats.colour);
   pictures.colour = std::move(splats.colour);

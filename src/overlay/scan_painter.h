@@ -9,6 +9,7 @@
 #include "base/image.h"
 #include "camera/camera.h"
 #include "overlay/frame_description.h"
+#include "raster/splat_device.h"
 
 namespace alidade {
 
@@ -26,7 +27,8 @@ class ScanPainter {
   ScanPainter();
   ~ScanPainter();
 
-  ScanPictures draw(const FrameDescription& frame, const Camera& camera);
+  /// `device` draws the shown points in the processor's place where it is given.
+  ScanPictures draw(const FrameDescription& frame, const Camera& camera, SplatDevice* device = nullptr);
 
  private:
   PointStyler& stylerOf(const ScanPoints& points);

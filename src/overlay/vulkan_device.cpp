@@ -11,6 +11,7 @@
 #include "gpu/gpu_device.h"
 #include "overlay/device.h"
 #include "overlay/frame_uniform.h"
+#include "overlay/vulkan_splatter.h"
 
 namespace alidade {
 
@@ -98,6 +99,7 @@ class VulkanOverlayDevice final : public OverlayDevice {
   Result<void> makePipelines();
   std::string name() const override { return "Vulkan: " + m_device->name(); }
   Result<Output> draw(const DrawList& list) override;
+  SplatDevice* splatDevice() override { return m_splatter.get(); }
 
  private:
   Result<void> ensureTargets(const DrawList& list);
@@ -114,6 +116,7 @@ class VulkanOverlayDevice final : public OverlayDevice {
   Output collect(const DrawList& list) const;
 
   std::shared_ptr<GpuDevice> m_device;
+  std::unique_ptr<SplatDevice> m_splatter;  ///< of a GPU; a driver on the processor is slower than raster/
   GpuPipeline m_surface, m_maskedSurface, m_hidden, m_maskedHidden;
   GpuPipeline m_edge, m_edgeWithDepth, m_edgeBehind, m_composite;
   GpuBindings m_surfaceBindings, m_hiddenBindings, m_edgeBindings, m_compositeBindings;
@@ -146,6 +149,11 @@ class VulkanOverlayDevice final : public OverlayDevice {
 };
 
 Result<void> VulkanOverlayDevice::makePipelines() {
+  if (!m_device->isSoftware()) {
+    auto splatter = createVulkanSplatter(m_device, m_device->hasAtomics64());
+    if (!splatter) return fail(splatter.error());
+    m_splatter = std::move(*splatter);
+  }
   using Binding = GpuBindingKind;
   using Kind = GpuVertexAttribute::Kind;
   GpuGraphicsDescription surface;

@@ -12,6 +12,7 @@
 #include <numbers>
 #include <utility>
 
+#include "base/log.h"
 #include "base/parallel.h"
 
 namespace alidade {
@@ -73,9 +74,10 @@ struct Task {
   std::uint32_t count;
 };
 
-std::vector<Task> tasksOf(std::span<const SplatRun> runs) {
+std::vector<Task> tasksOf(std::span<const SplatRun> runs, bool onlyChecked) {
   std::vector<Task> tasks;
   for (std::uint32_t r = 0; r < runs.size(); ++r) {
+    if (onlyChecked && !runs[r].view.checkDomain) continue;
     for (std::uint32_t first = 0; first < runs[r].count;
          first += std::min(kPointsPerTask, runs[r].count - first)) {
       tasks.push_back({r, first, std::min(kPointsPerTask, runs[r].count - first)});
@@ -84,14 +86,28 @@ std::vector<Task> tasksOf(std::span<const SplatRun> runs) {
   return tasks;
 }
 
+/// The device's plane; null where there is none or it failed.
+const void* drawOnDevice(SplatDevice* device, std::span<const SplatRun> runs, int width, int height,
+                         SplatPayload payload) {
+  if (!device) return nullptr;
+  std::vector<const SplatRun*> unchecked;
+  for (const SplatRun& run : runs)
+    if (!run.view.checkDomain) unchecked.push_back(&run);
+  auto plane = device->draw(unchecked, width, height, payload);
+  if (plane) return *plane;
+  logWarning("The processor draws the points: " + plane.error().text());
+  return nullptr;
+}
+
 template <class Pixel>
-void drawPlanes(std::span<const SplatRun> runs, int width, int height, SplatPayload payload,
+void drawPlanes(std::span<const SplatRun> runs, int width, int height, SplatPayload payload, SplatDevice* device,
                 const std::function<void(const SplatPlanes<Pixel>&, std::size_t, std::size_t)>& merge) {
   const SplatKernel& kernel = splatKernel();
   const std::size_t pixels = static_cast<std::size_t>(width) * height;
   const std::size_t bytes = pixels * sizeof(Pixel);
   std::vector<std::unique_ptr<SplatScratch>> scratch(workerCount());
-  const std::vector<Task> tasks = tasksOf(runs);
+  const auto* drawn = static_cast<const Pixel*>(drawOnDevice(device, runs, width, height, payload));
+  const std::vector<Task> tasks = tasksOf(runs, drawn != nullptr);
   parallelFor(tasks.size(), 1, [&](std::size_t first, std::size_t last, int worker) {
     if (!scratch[worker]) {
       scratch[worker] = std::make_unique<SplatScratch>(bytes);
@@ -111,6 +127,7 @@ void drawPlanes(std::span<const SplatRun> runs, int width, int height, SplatPayl
     }
   });
   SplatPlanes<Pixel> planes;
+  if (drawn) planes.planes.push_back(drawn);
   for (const auto& block : scratch) {
     if (block) planes.planes.push_back(static_cast<const Pixel*>(block->data()));
   }
@@ -275,14 +292,33 @@ SplatRun makeRun(const PointStore& store, const SelectedRange& range, const Rigi
   return run;
 }
 
+std::vector<CellNormals> layFootprints(std::span<SplatRun> runs, const RigidTransform& cameraFromWorld) {
+  std::vector<SplatRun*> wide;
+  for (SplatRun& run : runs)
+    if (!run.view.onePixel) wide.push_back(&run);
+  std::vector<CellNormals> normals(wide.size());
+  const glm::dmat3 rotation = cameraFromWorld.rotationMatrix();
+  parallelFor(wide.size(), 1, [&](std::size_t first, std::size_t last, int) {
+    for (std::size_t i = first; i < last; ++i) {
+      SplatView& view = wide[i]->view;
+      normals[i] = cellNormals({wide[i]->points, wide[i]->count}, rotation);
+      view.cellNormals = &normals[i].normal[0].x;
+      std::copy(normals[i].low.begin(), normals[i].low.end(), view.cellLow);
+      view.cellShift = normals[i].shift;
+    }
+  });
+  return normals;
+}
+
 void drawRuns(
     std::span<const SplatRun> runs, int width, int height, SplatPayload payload,
     const std::function<void(const SplatPlanes<std::uint32_t>&, std::size_t, std::size_t)>& mergeDepth,
-    const std::function<void(const SplatPlanes<std::uint64_t>&, std::size_t, std::size_t)>& mergePacked) {
+    const std::function<void(const SplatPlanes<std::uint64_t>&, std::size_t, std::size_t)>& mergePacked,
+    SplatDevice* device) {
   if (payload == SplatPayload::None) {
-    drawPlanes<std::uint32_t>(runs, width, height, payload, mergeDepth);
+    drawPlanes<std::uint32_t>(runs, width, height, payload, device, mergeDepth);
   } else {
-    drawPlanes<std::uint64_t>(runs, width, height, payload, mergePacked);
+    drawPlanes<std::uint64_t>(runs, width, height, payload, device, mergePacked);
   }
 }
 

@@ -11,6 +11,8 @@
 
 #include "camera/camera.h"
 #include "geometry/rigid_transform.h"
+#include "raster/cell_normals.h"
+#include "raster/splat_device.h"
 #include "raster/splat_kernel.h"
 #include "raster/splatter.h"
 
@@ -64,12 +66,17 @@ SplatView baseView(const Camera& camera, const SplatOptions& options);
 SplatRun makeRun(const PointStore& store, const SelectedRange& range, const RigidTransform& cameraFromWorld,
                  const SplatView& base, const SplatOptions& options);
 
+/// Fits the surface's cells of every run that draws footprints of more than a pixel, and points the runs at them;
+/// the result must outlive the drawing.
+std::vector<CellNormals> layFootprints(std::span<SplatRun> runs, const RigidTransform& cameraFromWorld);
+
 /// Draws the runs on all cores, one private plane a thread, then hands the planes to `merge` for
 /// bands of pixels [first, last), on all cores too. payload None draws 32-bit pixels and calls the
-/// first; anything else 64-bit ones and the second.
+/// first; anything else 64-bit ones and the second. A device draws the runs that need no domain check.
 void drawRuns(
     std::span<const SplatRun> runs, int width, int height, SplatPayload payload,
     const std::function<void(const SplatPlanes<std::uint32_t>&, std::size_t, std::size_t)>& mergeDepth,
-    const std::function<void(const SplatPlanes<std::uint64_t>&, std::size_t, std::size_t)>& mergePacked);
+    const std::function<void(const SplatPlanes<std::uint64_t>&, std::size_t, std::size_t)>& mergePacked,
+    SplatDevice* device = nullptr);
 
 }  // namespace alidade

@@ -79,7 +79,10 @@ std::vector<SplatRun> runsOf(const std::vector<SplatLayer>& layers, const LayerG
 
 void splatGroup(const std::vector<SplatLayer>& layers, const LayerGroup& group, const Camera& camera,
                 const RigidTransform& cameraFromWorld, const SplatOptions& options, SplatImages& images) {
-  const std::vector<SplatRun> runs = runsOf(layers, group, camera, cameraFromWorld, options);
+  std::vector<SplatRun> runs = runsOf(layers, group, camera, cameraFromWorld, options);
+  const std::vector<CellNormals> normals = options.planar && !options.fixedSize
+                                               ? layFootprints(runs, cameraFromWorld)
+                                               : std::vector<CellNormals>();
   const GroupPoints points(layers, group);
   const SplatPayload payload = options.ids      ? SplatPayload::Index
                                : options.colour ? SplatPayload::Colour
@@ -103,7 +106,8 @@ void splatGroup(const std::vector<SplatLayer>& layers, const LayerGroup& group, 
       if (options.colour) images.colour.data()[i] = colourOf(options.ids ? points.colour(value) : value);
     }
   };
-  drawRuns(runs, camera.width(), camera.height(), payload, mergeDepth, mergePacked);
+  drawRuns(runs, camera.width(), camera.height(), payload, mergeDepth, mergePacked,
+           options.device);
 }
 
 }  // namespace

@@ -22,6 +22,8 @@ struct SplatLayer {
   Selection selection;
 };
 
+class SplatDevice;
+
 struct SplatOptions {
   bool colour = false;     ///< fill SplatImages::colour
   bool ids = false;        ///< fill SplatImages::point
@@ -29,6 +31,9 @@ struct SplatOptions {
   double minimumSizePx = 1.0;
   double maximumSizePx = 16.0;
   bool round = false;
+  /// Footprints lie in the surface's plane where the points of a node show one: 1/z linear over the footprint,
+  /// foreshortened along it. Otherwise, and for fixedSize, they face the eye at their point's depth.
+  bool planar = true;
   /// Every point this wide in the world, metres, before `pointSize`: Zhang (2020), whose s n r H / (z tan(fov/2))
   /// is s w f / z with w = n r H / (f tan(fov/2)). 0: as wide as its neighbours are apart.
   double worldSizeM = 0;
@@ -36,6 +41,9 @@ struct SplatOptions {
   Reciprocal reciprocal = Reciprocal::Division;
   double reciprocalErrorPx = 0.05;
   bool fixedSize = false;  ///< Gantner (2018): pointSize is the size in pixels for every point
+  /// Draws what it can in the processor's place: the same picture but for what its arithmetic rounds over a
+  /// pixel's border. One that fails is logged, and the processor draws.
+  SplatDevice* device = nullptr;
 };
 
 /// What the points give for one camera; all of the camera's size.

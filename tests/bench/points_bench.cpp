@@ -11,6 +11,7 @@
 #include "bench/site.h"
 #include "cloud/point_store.h"
 #include "cloud/selection.h"
+#include "overlay/vulkan_splatter.h"
 #include "raster/eye_dome.h"
 #include "raster/occluder_mesh.h"
 #include "raster/occlusion.h"
@@ -60,6 +61,44 @@ void splat_colour_ids_20M(benchmark::State& state) {
 }
 void splat_colour_footprints_20M(benchmark::State& state) {
   splatSite(state, {.colour = true});
+}
+
+/// The prefix that the selection chooses: what a frame draws.
+void splatSelected(benchmark::State& state, SplatOptions options) {
+  const auto store = siteOf(20'000'000);
+  const Camera camera = hdCamera();
+  const std::vector<SplatLayer> layers{{store, select(*store, camera, overview(), {})}};
+  const double start = cpuSeconds();
+  for (auto _ : state) benchmark::DoNotOptimize(splat(layers, camera, overview(), options).drawn);
+  state.counters["cpu_ms"] = 1e3 * (cpuSeconds() - start) / static_cast<double>(state.iterations());
+  state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * layers[0].selection.pointCount));
+}
+
+void splat_selected(benchmark::State& state) {
+  splatSelected(state, {.colour = true});
+}
+void splat_selected_facing(benchmark::State& state) {
+  splatSelected(state, {.colour = true, .planar = false});
+}
+
+/// The compute shaders, on whatever Vulkan device there is; `wide`: 64-bit atomics.
+void splatVulkan(benchmark::State& state, bool wide) {
+  auto device = GpuDevice::create();
+  auto splatter = device ? createVulkanSplatter(*device, wide) : fail(device.error());
+  if (!splatter) {
+    state.SkipWithError(splatter.error().text().c_str());
+    return;
+  }
+  SplatOptions options{.colour = true, .maximumSizePx = 1.0};
+  options.device = splatter->get();
+  splatSelected(state, options);
+  state.SetLabel((*device)->name());
+}
+void splat_vulkan_selected(benchmark::State& state) {
+  splatVulkan(state, true);
+}
+void splat_vulkan_two_passes_selected(benchmark::State& state) {
+  splatVulkan(state, false);
 }
 
 void select_pixels_20M(benchmark::State& state) {
@@ -199,6 +238,10 @@ BENCHMARK(splat_depth_multiply_add_20M)->Unit(benchmark::kMillisecond)->UseRealT
 BENCHMARK(splat_colour_20M)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(splat_colour_ids_20M)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(splat_colour_footprints_20M)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(splat_selected)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(splat_selected_facing)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(splat_vulkan_selected)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(splat_vulkan_two_passes_selected)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(select_pixels_20M)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(select_and_splat_20M)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(occlusion_5M)->Unit(benchmark::kMillisecond)->UseRealTime();

@@ -1,0 +1,113 @@
+// SPDX-FileCopyrightText: 2026 the Alidade authors
+// SPDX-License-Identifier: BSD-3-Clause
+//
+// Points through the lens onto pixels: the twin of src/raster/splat_kernel_body.h, held to it by a test. The including
+// shader says how a pixel keeps the nearest: void put(uint at, float depth, uint payload).
+
+#ifndef ALIDADE_SPLAT_POINTS_GLSL
+#define ALIDADE_SPLAT_POINTS_GLSL
+
+#extension GL_GOOGLE_include_directive : require
+#include "distortion.glsl"
+
+layout(local_size_x = 256) in;
+
+// A run of points of one node: SplatRunBlock of src/overlay/vulkan_splatter.cpp.
+struct Run {
+  vec4 x, y, z;  // rows: camera axes from node steps, then the node's origin
+  vec4 size;     // footprint: size times depth, smallest, largest (0: one pixel), 1 where round
+  ivec4 cells;   // first step of the normals' cells, then their shift
+  uvec4 what;    // payload of the first point, first normal (all ones: none), unused
+};
+
+layout(std140, set = 0, binding = 0) uniform FrameBlock {
+  LensUniform lens;
+  vec4 fold;     // fold-back radius squared
+  uvec4 frame;   // width, height, 1 where the payload is the colour, chunks
+};
+layout(std430, set = 0, binding = 1) readonly buffer PointBlock { uvec2 points[]; };  // x | y << 16, z | rgb565 << 16
+layout(std430, set = 0, binding = 2) readonly buffer ChunkBlock { uvec4 chunks[]; };  // run, first point, count, place in run
+layout(std430, set = 0, binding = 3) readonly buffer RunBlock { Run runs[]; };
+layout(std430, set = 0, binding = 4) readonly buffer NormalBlock { vec4 normals[]; };
+
+void put(uint at, float depth, uint payload);
+
+void drawPixel(vec2 at, float z, uint payload) {
+  vec2 pixel = floor(at + 0.5);
+  if (!(pixel.x >= 0.0 && pixel.y >= 0.0 && pixel.x < float(frame.x) && pixel.y < float(frame.y))) return;
+  put(uint(pixel.y) * frame.x + uint(pixel.x), z, payload);
+}
+
+// Inverse depth, then how it changes along u and along v; 0 where the footprint is of one depth.
+vec3 tiltOf(Run run, uvec3 steps, vec2 xy, vec2 at, float z) {
+  if (run.what.y == 0xffffffffu) return vec3(0.0);
+  ivec3 cell = clamp((ivec3(steps) - run.cells.xyz) >> run.cells.w, ivec3(0), ivec3(7));
+  vec3 normal = normals[run.what.y + uint(cell.x + 8 * cell.y + 64 * cell.z)].xyz;
+  float step = 0.01 * (1.0 + (xy.x * xy.x + xy.y * xy.y));
+  vec2 alongX = (pixelOfDistorted(distortPoint(xy + vec2(step, 0.0), lens), lens) - at) * (1.0 / step);
+  vec2 alongY = (pixelOfDistorted(distortPoint(xy + vec2(0.0, step), lens), lens) - at) * (1.0 / step);
+  float facing = normal.x * xy.x + normal.y * xy.y + normal.z;
+  float determinant = alongX.x * alongY.y - alongY.x * alongX.y;
+  if (!(abs(facing) > 1e-3) || !(abs(determinant) > 1e-6)) return vec3(0.0);
+  float inverse = 1.0 / z;
+  float scale = inverse / (facing * determinant);
+  return vec3(inverse, (normal.x * alongY.y - normal.y * alongX.y) * scale,
+              (normal.y * alongX.x - normal.x * alongY.x) * scale);
+}
+
+void drawFootprint(Run run, uvec3 steps, vec2 xy, vec2 at, float z, uint payload) {
+  float size = max(min(run.size.x / z, run.size.z), run.size.y);
+  float halfSize = 0.5 * size;
+  vec2 extent = vec2(frame.xy);
+  if (!(at.x + halfSize > -0.5 && at.x - halfSize < extent.x - 0.5 && at.y + halfSize > -0.5 &&
+        at.y - halfSize < extent.y - 0.5)) return;
+  vec3 tilt = size > 1.0 ? tiltOf(run, steps, xy, at, z) : vec3(0.0);
+  float halfWidth = 0.5 * size / lens.focal.x;
+  float least = tilt.x / (1.0 + halfWidth);
+  float most = halfWidth < 0.9 ? tilt.x / (1.0 - halfWidth) : 10.0 * tilt.x;
+  ivec2 first = max(ivec2(floor(at - halfSize)) + 1, ivec2(0));
+  ivec2 last = min(ivec2(floor(at + halfSize)), ivec2(frame.xy) - 1);
+  ivec2 middle = ivec2(floor(at + 0.5));
+  float radiusSquared = run.size.w > 0.5 && size > 2.0 ? halfSize * halfSize : size * size;
+  for (int y = first.y; y <= last.y; ++y) {
+    for (int x = first.x; x <= last.x; ++x) {
+      vec2 off = vec2(x, y) - at;
+      if (off.x * off.x + off.y * off.y > radiusSquared) continue;
+      float depth = z;
+      if (tilt.x > 0.0) {
+        float inverse = tilt.x + (tilt.y * off.x + tilt.z * off.y);
+        bool beyond = inverse < least || inverse > most;
+        if (beyond && ivec2(x, y) != middle) continue;
+        depth = 1.0 / clamp(inverse, least, most);
+      }
+      put(uint(y) * frame.x + uint(x), depth, payload);
+    }
+  }
+}
+
+void main() {
+  uint chunk = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
+  if (chunk >= frame.w) return;
+  uvec4 range = chunks[chunk];
+  uint i = gl_LocalInvocationID.x;
+  if (i >= range.z) return;
+  Run run = runs[range.x];
+  uvec2 raw = points[range.y + i];
+  uvec3 steps = uvec3(raw.x & 0xffffu, raw.x >> 16, raw.y & 0xffffu);
+  vec3 p = vec3(steps);
+  // No contraction into fused operations: sums as the processor's.
+  precise vec3 q = vec3((run.x.x * p.x + run.x.y * p.y) + (run.x.z * p.z + run.x.w),
+                        (run.y.x * p.x + run.y.y * p.y) + (run.y.z * p.z + run.y.w),
+                        (run.z.x * p.x + run.z.y * p.y) + (run.z.z * p.z + run.z.w));
+  if (!(q.z > 1e-6)) return;
+  precise vec2 xy = q.xy * (1.0 / q.z);
+  if (!(xy.x * xy.x + xy.y * xy.y <= fold.x)) return;
+  vec2 at = pixelOfDistorted(distortPoint(xy, lens), lens);
+  uint payload = frame.z == 1u ? raw.y >> 16 : run.what.x + range.w + i;
+  if (run.size.z == 0.0)
+    drawPixel(at, q.z, payload);
+  else
+    drawFootprint(run, steps, xy, at, q.z, payload);
+}
+
+#endif
