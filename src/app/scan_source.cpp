@@ -8,6 +8,10 @@
 
 #include <fmt/format.h>
 
+#include "app/scan_join.h"
+#include "cloud/store_folder.h"
+#include "io/reader_registry.h"
+
 namespace alidade {
 
 namespace fs = std::filesystem;
@@ -33,6 +37,40 @@ void addOnce(const std::vector<ImportWarning>& found, std::vector<ImportWarning>
   }
 }
 
+constexpr std::uint64_t kBatch = 100'000;
+
+/// A part of a store as a scan, in the store's order.
+ScanSource scanSourceOf(const StorePart& part, const std::string& path) {
+  ScanSource source;
+  source.name = path;
+  source.identity = part.manifest.identity;
+  source.info = part.manifest.info;
+  source.info.pointCount = part.points->pointCount();
+  source.info.bounds = part.points->bounds();
+  source.read = [points = part.points](const ScanSource::Sink& sink, const Progress& progress) -> Result<void> {
+    for (std::uint64_t first = 0; first < points->pointCount(); first += kBatch) {
+      if (progress.cancelled()) return fail(cancelledError());
+      progress.report(static_cast<double>(first) / static_cast<double>(points->pointCount()), "Reading the point store");
+      PointBatch batch = points->batch(first, std::min(kBatch, points->pointCount() - first));
+      if (!sink(batch)) return {};
+    }
+    return {};
+  };
+  source.sample = [points = part.points](std::uint64_t wanted, const ScanSource::Sink& sink, const Progress& progress) -> Result<void> {
+    const auto all = static_cast<double>(std::max<std::uint64_t>(1, points->pointCount()));
+    const double level = points->levelOfShare(std::min(1.0, static_cast<double>(wanted) / all));
+    for (std::uint32_t n = 0; n < points->nodes().size(); ++n) {
+      if (progress.cancelled()) return fail(cancelledError());
+      const std::uint32_t count = points->countBelow(n, level);
+      if (count == 0) continue;
+      PointBatch batch = points->batch(points->nodes()[n].first, count);
+      if (!sink(batch)) return {};
+    }
+    return {};
+  };
+  return source;
+}
+
 }  // namespace
 
 ScanSource scanSourceOf(const ScanReader& reader, const std::string& path, const ScanInfo& info,
@@ -51,6 +89,22 @@ ScanSource scanSourceOf(const ScanReader& reader, const std::string& path, const
     return reader.sample(path, wanted, sink, progress);
   };
   return source;
+}
+
+Result<ScanSource> openScan(const std::string& path, std::vector<ImportWarning>* warnings) {
+  if (isStoreFolder(path)) {
+    const auto store = openStore(path);
+    if (!store) return fail(store.error());
+    std::vector<ScanSource> parts;
+    for (const StorePart& part : store->parts) parts.push_back(scanSourceOf(part, path));
+    if (parts.size() == 1) return std::move(parts.front());
+    return joinScans(std::move(parts));
+  }
+  const auto reader = ReaderRegistry::instance().findAs<ScanReader>(path);
+  if (!reader) return fail(reader.error());
+  const auto info = (*reader)->inspect(path);
+  if (!info) return fail(info.error());
+  return scanSourceOf(**reader, path, *info, warnings);
 }
 
 }  // namespace alidade

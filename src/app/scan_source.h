@@ -16,4 +16,8 @@ namespace alidade {
 ScanSource scanSourceOf(const ScanReader& reader, const std::string& path, const ScanInfo& info,
                         std::vector<ImportWarning>* warnings);
 
+/// A scan by its path: a file of any format that is read, or a point store, whose parts come as one scan (see joinScans).
+/// Error where it cannot be opened. `warnings` as above.
+Result<ScanSource> openScan(const std::string& path, std::vector<ImportWarning>* warnings);
+
 }  // namespace alidade
