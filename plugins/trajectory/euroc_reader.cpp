@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "plugin_api/text_file.h"
+#include "trajectory/pose_rows.h"
 #include "trajectory/timed_pose.h"
 
 namespace alidade {
@@ -57,22 +58,15 @@ double secondsOf(std::int64_t nanoseconds) {
 Result<CameraSet> parseEuroc(std::string_view text, const std::string& path, const Progress& progress) {
   TrajectoryBuilder trajectory;
   LineReader lines(text);
-  for (std::string_view line; lines.next(line);) {
-    const std::string_view words = trimmed(line);
-    if (words.empty() || words.starts_with('#')) continue;
-    if (lines.number() % 1024 == 0) {
-      if (progress.cancelled()) return fail(cancelledError());
-      progress.report(lines.fraction(), "Reading the trajectory");
-    }
-    const std::string place = placeInFile(path, lines.number());
-    const auto parsed = lineOf(words);
+  const auto read = forPoseRows(lines, path, progress, [&](std::string_view line, const std::string& place) -> Result<void> {
+    const auto parsed = lineOf(line);
     if (!parsed)
       return fail("The line is no pose: nanoseconds, position and quaternion w x y z are expected, commas between", place,
                   "Choose the data.csv of the ground truth's folder");
     const auto& p = parsed->pose;
-    if (auto added = trajectory.add(secondsOf(parsed->nanoseconds), {p[0], p[1], p[2]}, {p[4], p[5], p[6], p[3]}, place); !added)
-      return fail(added.error());
-  }
+    return trajectory.add(secondsOf(parsed->nanoseconds), {p[0], p[1], p[2]}, {p[4], p[5], p[6], p[3]}, place);
+  });
+  if (!read) return fail(read.error());
   auto set = trajectory.take("EuRoC trajectory", path);
   if (set) set->warnings.push_back({"The poses are of the measuring body, not of a camera: say where the camera is on it in a rig file", path});
   return set;

@@ -14,6 +14,7 @@
 #include "geometry/attitude.h"
 #include "plugin_api/import_slip.h"
 #include "plugin_api/text_file.h"
+#include "trajectory/pose_rows.h"
 
 namespace alidade {
 
@@ -217,19 +218,14 @@ Result<CameraSet> parsePoseTable(std::string_view text, const std::string& path,
   CameraSet set;
   ImportSlip twice;
   std::unordered_set<std::string> names;
-  for (std::string_view line; lines.next(line);) {
-    const std::string_view words = trimmed(line);
-    if (words.empty() || words.starts_with('#')) continue;
-    if (lines.number() % 1024 == 0) {
-      if (progress.cancelled()) return fail(cancelledError());
-      progress.report(lines.fraction(), "Reading poses");
-    }
-    const std::string where = placeInFile(path, lines.number());
+  const auto read = forPoseRows(lines, path, progress, [&](std::string_view line, const std::string& where) -> Result<void> {
     auto pose = poseOf(line, *layout, where);
     if (!pose) return fail(pose.error());
     if (!pose->name.empty() && !names.insert(pose->name).second) twice.note(where);
     set.pictures.push_back(std::move(*pose));
-  }
+    return {};
+  });
+  if (!read) return fail(read.error());
   if (set.pictures.empty()) return fail("The table holds no pose", path, kAdvice);
   twice.tell(set.warnings, "names come twice");
   if (layout->unitAssumed) set.warnings.push_back({"The header names no unit of the angles: degrees are assumed", path});

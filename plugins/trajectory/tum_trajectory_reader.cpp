@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "plugin_api/text_file.h"
+#include "trajectory/pose_rows.h"
 #include "trajectory/timed_pose.h"
 
 namespace alidade {
@@ -33,21 +34,15 @@ double quaternionLength(const TumLine& n) { return std::hypot(std::hypot(n[4], n
 Result<CameraSet> parseTumTrajectory(std::string_view text, const std::string& path, const Progress& progress) {
   TrajectoryBuilder trajectory;
   LineReader lines(text);
-  for (std::string_view line; lines.next(line);) {
-    const std::string_view words = trimmed(line);
-    if (words.empty() || words.starts_with('#')) continue;
-    if (lines.number() % 1024 == 0) {
-      if (progress.cancelled()) return fail(cancelledError());
-      progress.report(lines.fraction(), "Reading the trajectory");
-    }
-    const std::string place = placeInFile(path, lines.number());
+  const auto read = forPoseRows(lines, path, progress, [&](std::string_view line, const std::string& place) -> Result<void> {
     const auto n = numbersOf(line);
     if (!n)
       return fail("The line is not eight numbers: time, position and quaternion are expected", place,
                   "Export the trajectory as `timestamp tx ty tz qx qy qz qw`");
     const auto& v = *n;
-    if (auto added = trajectory.add(v[0], {v[1], v[2], v[3]}, {v[4], v[5], v[6], v[7]}, place); !added) return fail(added.error());
-  }
+    return trajectory.add(v[0], {v[1], v[2], v[3]}, {v[4], v[5], v[6], v[7]}, place);
+  });
+  if (!read) return fail(read.error());
   return trajectory.take("TUM trajectory", path);
 }
 
