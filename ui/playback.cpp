@@ -59,6 +59,7 @@ void Playback::tick() {
     m_dropped += std::max(0, wanted - now - 1);
     ++m_shown;
     m_shownPerSecond = m_shown / std::max(elapsed, 1e-3);
+    m_session.keepMoving();
     m_session.setFrameIndex(wanted);
     emit changed();
   }

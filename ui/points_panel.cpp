@@ -71,6 +71,7 @@ PointsPanel::PointsPanel(Session& session, QWidget* parent) : SettingsForm(sessi
   buildBox();
   buildSection();
   buildLook();
+  buildPace();
   finish();
   connect(&session, &Session::dataChanged, this, &PointsPanel::onData);
   onData();
@@ -247,6 +248,33 @@ void PointsPanel::buildLook() {
       form, tr("Strength"), tr("Of the Eye-Dome lighting"), QString(), 0.1, 5, 0.1, 1,
       [](const auto& d) { return d.points.eyeDomeStrength; },
       [](auto& d, double v) { d.points.eyeDomeStrength = v; });
+}
+
+/// A matter of the machine: kept with the user's settings, not with the project.
+void PointsPanel::buildPace() {
+  QFormLayout* form = section(tr("While the view moves"));
+  const auto row = [&](const QString& objectName, const QString& name, const QString& tip, double high, double FramePace::*member) {
+    auto* spin = new QDoubleSpinBox;
+    spin->setObjectName(objectName);
+    spin->setRange(0, high);
+    spin->setDecimals(0);
+    spin->setSingleStep(5);
+    spin->setSuffix(tr(" ms"));
+    spin->setAccessibleName(name);
+    spin->setToolTip(tip);
+    spin->setKeyboardTracking(false);
+    spin->setValue(m_session.pace().*member);
+    form->addRow(name, spin);
+    connect(spin, &QDoubleSpinBox::valueChanged, this, [this, member](double ms) {
+      FramePace pace = m_session.pace();
+      pace.*member = ms;
+      m_session.setPace(pace);
+    });
+  };
+  row(QStringLiteral("frameTime"), tr("Time of a frame"), tr("Fewer points are used to keep it; the still picture has all. 0 always uses all"), 500,
+      &FramePace::frameTimeMs);
+  row(QStringLiteral("selectionAge"), tr("Points serve for"), tr("The points chosen for one frame serve the next ones for so long. 0 chooses for each"),
+      1000, &FramePace::selectionAgeMs);
 }
 
 void PointsPanel::onData() {

@@ -30,6 +30,7 @@ class PointsPanel : public SettingsForm {
   void buildBox();
   void buildSection();
   void buildLook();
+  void buildPace();
 
   void onData();
   void refreshRange(const DisplaySettings& display);

@@ -123,12 +123,15 @@ void RenderLoop::render(OverlayRenderer& renderer, const RenderRequest& request)
     description->residuals.clear();
   }
   const auto drawing = Clock::now();
+  description->pointBudget = m_pacer.begin(request.pace ? request.pace->frameTimeMs : 0);
+  description->selectionAgeMs = request.pace ? request.pace->selectionAgeMs : 0;
   auto rendered = renderer.render(*description);
   result->renderMs = millisecondsSince(drawing);
   if (!rendered) {
     emit failed(request.frame, request.serial, rendered.error());
     return;
   }
+  m_pacer.end(std::max(rendered->pointsJudged, rendered->pointsDrawn));
   result->frame.poseQuality = frame->quality;
   result->frame.scanSpacingM = scanSpacing(*description);
   result->frame.description = std::move(*description);

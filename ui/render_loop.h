@@ -15,6 +15,7 @@
 
 #include "app/jobs.h"
 #include "app/workspace.h"
+#include "overlay/frame_pacer.h"
 
 namespace alidade {
 
@@ -31,7 +32,8 @@ struct RenderRequest {
   bool residuals = true;
   int width = 0, height = 0;  ///< of the result; 0: the raw picture's
   quint64 serial = 0;         ///< counts requests; a later one wins
-  bool draft = false;         ///< a smaller picture while something is being dragged
+  std::optional<FramePace> pace;  ///< something is being dragged or played: in time before complete
+  bool draft = false;         ///< a smaller picture
 };
 
 struct RenderResult {
@@ -67,6 +69,7 @@ class RenderLoop : public QObject {
   void render(OverlayRenderer& renderer, const RenderRequest& request);
 
   PictureCache m_pictures;
+  FramePacer m_pacer;  ///< of the render thread
   mutable std::mutex m_mutex;
   std::condition_variable m_wake;
   std::optional<RenderRequest> m_waiting;

@@ -5,17 +5,12 @@
 
 #include <algorithm>
 
+#include <QSettings>
+
 #include "ui/format.h"
 #include "ui/project_change.h"
 
 namespace alidade {
-
-namespace {
-
-// Above this a drag shows smaller pictures, so that it stays under the finger.
-constexpr double kDraftAboveMs = 45.0;
-
-}  // namespace
 
 Session::Session(QObject* parent)
     : QObject(parent), m_project(std::make_shared<Project>()), m_data(std::make_shared<LoadedData>()) {
@@ -24,6 +19,9 @@ Session::Session(QObject* parent)
   connect(&m_render, &RenderLoop::deviceFailed, this,
           [this](const Error& error) { m_messages.error(error); });
   connect(&m_undo, &QUndoStack::cleanChanged, this, &Session::modifiedChanged);
+  const QSettings settings;
+  m_pace.frameTimeMs = settings.value(QStringLiteral("frameTimeMs"), m_pace.frameTimeMs).toDouble();
+  m_pace.selectionAgeMs = settings.value(QStringLiteral("selectionAgeMs"), m_pace.selectionAgeMs).toDouble();
   m_settle.setSingleShot(true);
   m_settle.setInterval(120);
   connect(&m_settle, &QTimer::timeout, this, [this] {
@@ -147,8 +145,7 @@ void Session::dragChange(const std::function<void(Project&)>& edit) {
   if (!m_dragStart) m_dragStart = m_project;
   auto after = std::make_shared<Project>(*m_project);
   edit(*after);
-  m_dragging = true;
-  m_settle.start();
+  keepMoving();
   restore(std::move(after));
 }
 
@@ -177,13 +174,17 @@ void Session::restore(std::shared_ptr<const Project> snapshot) {
 void Session::setDisplay(const DisplaySettings& display, bool dragging) {
   m_display = display;
   m_displayUnsaved = true;
-  if (dragging) {
-    m_dragging = true;
-    m_settle.start();
-  }
+  if (dragging) keepMoving();
   emit displayChanged();
   emit modifiedChanged();
   requestRender();
+}
+
+void Session::setPace(const FramePace& pace) {
+  m_pace = pace;
+  QSettings settings;
+  settings.setValue(QStringLiteral("frameTimeMs"), pace.frameTimeMs);
+  settings.setValue(QStringLiteral("selectionAgeMs"), pace.selectionAgeMs);
 }
 
 void Session::select(const SelectionState& selection) {
@@ -284,6 +285,11 @@ void Session::setViewSize(int width, int height) {
   requestRender();
 }
 
+void Session::keepMoving() {
+  m_dragging = true;
+  m_settle.start();
+}
+
 void Session::requestRender() {
   if (m_requestDue) return;
   m_requestDue = true;  // several changes in one event make one request
@@ -309,7 +315,8 @@ void Session::sendRequest() {
   request.residuals = m_residuals;
   request.width = m_width;
   request.height = m_height;
-  if (m_dragging && m_renderMs > kDraftAboveMs && m_width > 0) {
+  if (m_dragging) request.pace = m_pace;
+  if (request.pace && m_pace.frameTimeMs > 0 && m_renderMs > m_pace.frameTimeMs && m_width > 0) {
     request.width = std::max(1, m_width / 2);
     request.height = std::max(1, m_height / 2);
     request.draft = true;
@@ -331,7 +338,7 @@ void Session::onRendered(const std::shared_ptr<const RenderResult>& result) {
   if (result->request.frame != m_frame && !result->request.project->findFrame(m_frame))
     return;  // a closed project
   m_rendered = result;
-  if (!result->request.draft) m_renderMs = result->renderMs;
+  if (!result->request.pace) m_renderMs = result->renderMs;
   emit pictureReady(result);
 }
 

@@ -36,6 +36,7 @@ class Session : public QObject {
   const std::shared_ptr<const Project>& project() const { return m_project; }
   const std::shared_ptr<const LoadedData>& data() const { return m_data; }
   const DisplaySettings& display() const { return m_display; }
+  const FramePace& pace() const { return m_pace; }
   const SelectionState& selection() const { return m_selection; }
   FrameId frame() const { return m_frame; }
   int frameIndex() const;  ///< in Project::frames; -1: none
@@ -67,6 +68,7 @@ class Session : public QObject {
   void cancelDrag();
 
   void setDisplay(const DisplaySettings& display, bool dragging = false);
+  void setPace(const FramePace& pace);  ///< kept in the user's settings
   void select(const SelectionState& selection);
   void setFrame(FrameId frame);
   void setFrameIndex(int index);  ///< clamped
@@ -91,6 +93,8 @@ class Session : public QObject {
   bool upToDate() const;
   double renderMs() const { return m_renderMs; }
   void requestRender();
+  /// The view moves, and will be still soon: quick pictures until then.
+  void keepMoving();
 
  signals:
   void projectOpened();  ///< before anything else of a new project is told
@@ -119,6 +123,7 @@ class Session : public QObject {
   bool m_unsaved = false;
   bool m_displayUnsaved = false;
   DisplaySettings m_display;
+  FramePace m_pace;
   SelectionState m_selection;
   FrameId m_frame;
 

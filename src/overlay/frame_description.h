@@ -25,6 +25,7 @@ namespace alidade {
 struct ScanLayer {
   ScanPoints points;
   std::shared_ptr<const OccluderMesh> surface;  ///< tells what hides where the points are too sparse; null: none
+  std::uint64_t sampleOf = 0;  ///< points of the whole scan where these are only a sample of it; 0: these are all
 };
 
 /// A design with what of it is shown. `elementVisible` and `elementColour` are by element, or empty
@@ -60,6 +61,10 @@ struct FrameDescription {
   std::vector<ResidualMark> residuals;
   double residualScale = 1.0;
   DisplaySettings display;
+
+  // While the view moves, frames are quick before they are complete (frame_pacer.h).
+  std::uint64_t pointBudget = 0;  ///< of each scan pass, over all scans; 0: none
+  double selectionAgeMs = 0;      ///< points chosen for an earlier frame may serve this one for so long
 };
 
 /// Pixels of one design element, counted on the result. The front layer counts by its state; the hidden
@@ -87,7 +92,8 @@ struct OverlayPicture {
   Image<std::uint8_t>
       state;  ///< Visibility of the design at the pixel, as its enum value; Outside where none
 
-  std::uint64_t pointsTotal = 0, pointsDrawn = 0;
+  std::uint64_t pointsTotal = 0, pointsDrawn = 0;  ///< see ScanPictures
+  std::uint64_t pointsJudged = 0;
   double worstErrorPx = 0;  ///< largest distance of a drawn design edge from its exact curve, pixels
   std::vector<ElementPixels> elements;  ///< those with a pixel in the picture
 

@@ -116,7 +116,7 @@ Result<OverlayPicture> OverlayRenderer::render(const FrameDescription& frame) {
   ScanPictures scans = m_impl->scans.draw(frame, camera, m_impl->device->splatDevice());
   DrawList list = buildDrawList(frame, camera);
   list.image = m_impl->imageFor(frame, width, height);
-  const bool hides = frame.display.depthPass && scans.drawn > 0;
+  const bool hides = frame.display.depthPass && scans.chosen > 0;
   list.scanDepth = hides ? &scans.depth : nullptr;
   list.pointColour = scans.colour.empty() ? nullptr : &scans.colour;
   auto drawn = m_impl->device->draw(list);
@@ -130,6 +130,7 @@ Result<OverlayPicture> OverlayRenderer::render(const FrameDescription& frame) {
   picture.scanDepth = std::move(scans.depth);
   picture.pointsTotal = scans.total;
   picture.pointsDrawn = scans.drawn;
+  picture.pointsJudged = scans.judged;
   picture.worstErrorPx = list.worstErrorPx;
   std::uint32_t elementCount = 0;
   for (const DesignLayer& layer : frame.designs) {

@@ -4,6 +4,7 @@
 #include "overlay/scan_painter.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -16,12 +17,26 @@ namespace alidade {
 
 namespace {
 
-SelectionOptions selectionOptions(const DisplaySettings& display) {
+SelectionOptions selectionOptions(const FrameDescription& frame) {
+  const DisplaySettings& display = frame.display;
   SelectionOptions options;
+  options.pointBudget = frame.pointBudget;
   options.density = display.density;
   options.law = display.densityLaw;
   options.pointsPerSquareMetre = display.pointsPerSquareMetre;
   return options;
+}
+
+/// Where a budget holds, what hides is judged by as many points as it allows, evenly spaced on screen.
+SelectionOptions judgingOptions(std::uint64_t budget) {
+  SelectionOptions options;
+  options.targetSpacingPx = 0.5;
+  options.pointBudget = budget;
+  return options;
+}
+
+double millisecondsNow() {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
 SplatOptions splatOptions(const FrameDescription& frame) {
@@ -39,7 +54,8 @@ SplatOptions splatOptions(const FrameDescription& frame) {
 
 }  // namespace
 
-ScanPainter::ScanPainter() = default;
+ScanPainter::ScanPainter() : ScanPainter(millisecondsNow) {}
+ScanPainter::ScanPainter(Clock clock) : m_clock(std::move(clock)) {}
 ScanPainter::~ScanPainter() = default;
 
 PointStyler& ScanPainter::stylerOf(const ScanPoints& points) {
@@ -54,20 +70,22 @@ PointStyler& ScanPainter::stylerOf(const ScanPoints& points) {
 /// Points average the noise of many returns and see with all stations' eyes, so they are asked first; the
 /// surface of the scanners' grid answers where they are too sparse to tell (sample site: 95.9 % right with
 /// both, 95.3 with points, 94.8 with the surface alone). A filtered scan is judged by its points: its
-/// surface holds what the filter leaves out.
-DepthImage ScanPainter::occlusion(const FrameDescription& frame, const Camera& camera) {
+/// surface holds what the filter leaves out. While the view moves, a budget may thin both.
+DepthImage ScanPainter::occlusion(const FrameDescription& frame, const Camera& camera, std::uint64_t& judged) {
   const PointStyle& style = frame.display.points;
   std::vector<SplatLayer> layers;
   Occluders surfaces;
-  bool any = false;
-  for (const ScanLayer& scan : frame.scans) {
-    Selection all = selectAll(*scan.points.store, camera, frame.cameraFromWorld);
+  std::vector<Selection> few;
+  if (frame.pointBudget > 0) few = select(m_stores, camera, frame.cameraFromWorld, judgingOptions(frame.pointBudget));
+  for (std::size_t i = 0; i < frame.scans.size(); ++i) {
+    const ScanLayer& scan = frame.scans[i];
+    Selection all = few.empty() ? selectAll(*scan.points.store, camera, frame.cameraFromWorld) : std::move(few[i]);
     stylerOf(scan.points).apply(style, PointStyler::Part::Filter, frame.cameraFromWorld.centre(), all);
-    any = any || all.pointCount > 0;
+    judged += all.pointCount;
     layers.push_back({scan.points.store, std::move(all)});
     if (scan.surface && !style.filters()) surfaces.meshes.push_back(scan.surface);
   }
-  if (!any) return DepthImage(camera.width(), camera.height(), std::numeric_limits<float>::quiet_NaN());
+  if (judged == 0) return DepthImage(camera.width(), camera.height(), std::numeric_limits<float>::quiet_NaN());
   DepthImage depth = occlusionDepth(layers, camera, frame.cameraFromWorld).depth;
   if (surfaces.meshes.empty()) return depth;
   const DepthImage behind = occlusionDepth(surfaces, camera, frame.cameraFromWorld).depth;
@@ -76,31 +94,44 @@ DepthImage ScanPainter::occlusion(const FrameDescription& frame, const Camera& c
   return depth;
 }
 
+/// While the view moves, what was chosen for one frame may serve the next ones, too: at the border of the view
+/// points are then missing, and distances are a little off.
+const std::vector<Selection>& ScanPainter::chosenFor(const FrameDescription& frame, const Camera& camera) {
+  std::vector<std::shared_ptr<const PointStore>> stores;
+  for (const ScanLayer& scan : frame.scans) stores.push_back(scan.points.store);
+  const double now = m_clock();
+  const bool fresh = now - m_chosenAt < frame.selectionAgeMs;
+  if (fresh && stores == m_stores) return m_chosen;
+  m_stores = std::move(stores);
+  m_chosen = select(m_stores, camera, frame.cameraFromWorld, selectionOptions(frame));
+  m_chosenAt = now;
+  return m_chosen;
+}
+
 ScanPictures ScanPainter::draw(const FrameDescription& frame, const Camera& camera, SplatDevice* device) {
   std::erase_if(m_stylers, [&](const auto& entry) {
     return std::none_of(frame.scans.begin(), frame.scans.end(),
                         [&](const ScanLayer& scan) { return scan.points.store.get() == entry.first; });
   });
   ScanPictures pictures;
-  std::vector<std::shared_ptr<const PointStore>> stores;
-  for (const ScanLayer& scan : frame.scans) {
-    stores.push_back(scan.points.store);
-    pictures.total += scan.points.store->pointCount();
+  std::vector<SplatLayer> layers;
+  const std::vector<Selection>& chosen = chosenFor(frame, camera);
+  const bool shown = frame.display.pointPass;
+  for (std::size_t i = 0; i < frame.scans.size(); ++i) {
+    const ScanLayer& scan = frame.scans[i];
+    layers.push_back({scan.points.store, chosen[i]});
+    pictures.total += scan.sampleOf > 0 ? scan.sampleOf : scan.points.store->pointCount();
+    pictures.chosen += chosen[i].pointCount;
   }
   // Also with the depth pass off: the read-out under the cursor stands on it.
-  pictures.depth = occlusion(frame, camera);
-  const std::vector<Selection> selections =
-      select(stores, camera, frame.cameraFromWorld, selectionOptions(frame.display));
-  for (const Selection& selection : selections) pictures.drawn += selection.pointCount;
-  if (!frame.display.pointPass) return pictures;
-
-  std::vector<SplatLayer> layers;
-  for (std::size_t i = 0; i < stores.size(); ++i) {
-    layers.push_back({stores[i], selections[i]});
+  pictures.depth = occlusion(frame, camera, pictures.judged);
+  for (std::size_t i = 0; i < layers.size(); ++i) {
     stylerOf(frame.scans[i].points)
-        .apply(frame.display.points, PointStyler::Part::ColourAndFilter, frame.cameraFromWorld.centre(),
-               layers.back().selection);
+        .apply(frame.display.points, shown ? PointStyler::Part::ColourAndFilter : PointStyler::Part::Filter,
+               frame.cameraFromWorld.centre(), layers[i].selection);
+    pictures.drawn += layers[i].selection.pointCount;
   }
+  if (!shown) return pictures;
   SplatOptions options = splatOptions(frame);
   options.device = device;
   SplatImages splats = splat(layers, camera, frame.cameraFromWorld, options);

@@ -3,8 +3,11 @@
 
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
+#include <vector>
 
 #include "base/image.h"
 #include "camera/camera.h"
@@ -17,14 +20,19 @@ namespace alidade {
 struct ScanPictures {
   DepthImage depth;    ///< occlusion depth: see raster/occlusion.h
   ColourImage colour;  ///< the points as styled; empty where they are not shown
-  std::uint64_t total = 0, drawn = 0;  ///< points of all scans, and those that the density chose
+  std::uint64_t total = 0;   ///< points of all scans
+  std::uint64_t chosen = 0;  ///< that density and budget chose
+  std::uint64_t drawn = 0;   ///< of those, what classes, box and section leave
+  std::uint64_t judged = 0;  ///< that tell what hides
 };
 
 /// Draws a frame's scans: what hides the design, and the points themselves where they are shown. Keeps
 /// styled points between frames. One user at a time.
 class ScanPainter {
  public:
+  using Clock = std::function<double()>;  ///< milliseconds
   ScanPainter();
+  explicit ScanPainter(Clock clock);
   ~ScanPainter();
 
   /// `device` draws the shown points in the processor's place where it is given.
@@ -32,9 +40,15 @@ class ScanPainter {
 
  private:
   PointStyler& stylerOf(const ScanPoints& points);
-  DepthImage occlusion(const FrameDescription& frame, const Camera& camera);
+  DepthImage occlusion(const FrameDescription& frame, const Camera& camera, std::uint64_t& judged);
+  const std::vector<Selection>& chosenFor(const FrameDescription& frame, const Camera& camera);
 
+  Clock m_clock;
   std::map<const PointStore*, std::unique_ptr<PointStyler>> m_stylers;
+  /// The points chosen for a frame, and for which scans.
+  std::vector<std::shared_ptr<const PointStore>> m_stores;
+  std::vector<Selection> m_chosen;
+  double m_chosenAt = 0;
 };
 
 }  // namespace alidade

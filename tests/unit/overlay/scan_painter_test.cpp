@@ -1,0 +1,99 @@
+// SPDX-FileCopyrightText: 2026 the Alidade authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "overlay/scan_painter.h"
+
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace alidade {
+
+namespace {
+
+/// A wall of 8 m × 6 m in the plane y = 0, half of it class 2, half class 6.
+std::shared_ptr<const PointStore> wall(std::size_t count) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> along(-4, 4), up(-3, 3);
+  PointBatch batch;
+  for (std::size_t i = 0; i < count; ++i) {
+    batch.position.push_back({along(random), 0, up(random)});
+    batch.rgb.push_back({200, 100, 50});
+    batch.classification.push_back(batch.position.back().x < 0 ? 2 : 6);
+  }
+  PointStoreBuilder builder;
+  builder.add(batch);
+  return *builder.build(Progress());
+}
+
+struct Wall : ::testing::Test {
+  Wall() {
+    frame.camera = Camera(*Intrinsics::fromParameters(CameraModel::Pinhole, 320, 240, {200, 200, 159.5, 119.5}));
+    lookFrom({0, -8, 0});
+    frame.scans.push_back({{store, nullptr, 0}, nullptr});
+    frame.display.pointPass = true;
+  }
+  void lookFrom(const glm::dvec3& eye) { frame.cameraFromWorld = RigidTransform::cameraLookingAt(eye, eye + glm::dvec3(0, 8, 0)); }
+  ScanPictures draw() { return painter.draw(frame, frame.camera); }
+
+  std::shared_ptr<const PointStore> store = wall(200'000);
+  FrameDescription frame;
+  double now = 0;
+  ScanPainter painter{[this] { return now; }};
+};
+
+std::size_t known(const DepthImage& depth) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < depth.size(); ++i) count += std::isfinite(depth.data()[i]);
+  return count;
+}
+
+}  // namespace
+
+TEST_F(Wall, CountsAsDrawnWhatTheClassesLeave) {
+  const ScanPictures all = draw();
+  EXPECT_EQ(all.total, 200'000u);
+  EXPECT_EQ(all.drawn, all.chosen);
+  frame.display.points.hiddenClasses.set(6);
+  const ScanPictures half = draw();
+  EXPECT_EQ(half.chosen, all.chosen);
+  EXPECT_NEAR(static_cast<double>(half.drawn), 0.5 * static_cast<double>(all.drawn), 0.02 * static_cast<double>(all.drawn));
+  frame.display.pointPass = false;
+  EXPECT_EQ(draw().drawn, half.drawn);
+  frame.display.points.hiddenClasses.set(2);
+  EXPECT_EQ(draw().drawn, 0u);
+}
+
+TEST_F(Wall, ASampleCountsAsTheWholeItStandsFor) {
+  frame.scans[0].sampleOf = 10'000'000;
+  EXPECT_EQ(draw().total, 10'000'000u);
+}
+
+TEST_F(Wall, ABudgetHoldsForWhatIsShownAndForWhatJudges) {
+  const ScanPictures all = draw();
+  frame.pointBudget = 10'000;
+  const ScanPictures few = draw();
+  EXPECT_LE(few.chosen, 10'000u);
+  EXPECT_LE(few.judged, 10'000u);
+  EXPECT_GT(few.judged, 5'000u);
+  EXPECT_GT(all.judged, 100'000u);
+  // Thinned evenly: nearly all of the wall still hides.
+  EXPECT_GT(known(few.depth), known(all.depth) * 9 / 10);
+}
+
+TEST_F(Wall, PointsChosenForOneFrameServeOthersForAWhile) {
+  frame.selectionAgeMs = 100;
+  const std::uint64_t near = draw().chosen;
+  lookFrom({0, -30, 0});
+  now = 99;
+  EXPECT_EQ(draw().chosen, near);
+  now = 101;
+  const std::uint64_t far = draw().chosen;
+  EXPECT_LT(far, near / 2);
+  lookFrom({0, -8, 0});
+  frame.selectionAgeMs = 0;  // still again
+  EXPECT_EQ(draw().chosen, near);
+}
+
+}  // namespace alidade
