@@ -137,21 +137,38 @@ void ProjectFiles::load(std::shared_ptr<const Project> project, bool onlyNew) {
   if (wanted->scans.empty() && wanted->designs.empty()) return;
   m_session.jobs().run(
       tr("Loading scans and designs"),
-      [wanted](const Progress& progress) { return loadData(*wanted, progress); },
-      [this, name = project->path](Result<LoadOutcome> outcome) {
+      [this, wanted, name = project->path](const Progress& progress) {
+        return loadData(*wanted, progress, [&](LoadedData part) {
+          QMetaObject::invokeMethod(this, [this, name, part = std::move(part)] { showPart(name, part); }, Qt::QueuedConnection);
+        });
+      },
+      [this, wanted, name = project->path](Result<LoadOutcome> outcome) {
+        const bool same = m_session.project()->path == name;
         if (!outcome) {
+          if (same) dropUnfinished(*wanted);
           m_session.messages().error(outcome.error(), tr("loading scans and designs"));
           return;
         }
-        if (m_session.project()->path != name) return;  // another project was opened meanwhile
+        if (!same) return;  // another project was opened meanwhile
         for (const ImportWarning& warning : outcome->warnings)
           m_session.messages().warn(text(warning.what), text(warning.where));
         for (const Error& problem : outcome->problems) m_session.messages().error(problem);
-        LoadedData all = *m_session.data();
-        for (auto& [id, scan] : outcome->data.scans) all.scans[id] = scan;
-        for (auto& [id, design] : outcome->data.designs) all.designs[id] = design;
-        m_session.setData(std::move(all));
+        dropUnfinished(*wanted);
       });
+}
+
+void ProjectFiles::showPart(const std::string& projectPath, const LoadedData& part) {
+  if (m_session.project()->path != projectPath) return;
+  LoadedData all = *m_session.data();
+  mergeInto(all, part);
+  m_session.setData(std::move(all));
+}
+
+void ProjectFiles::dropUnfinished(const Project& wanted) {
+  LoadedData rest = *m_session.data();
+  const std::size_t before = rest.scans.size();
+  dropSamples(rest, wanted);
+  if (rest.scans.size() != before) m_session.setData(std::move(rest));
 }
 
 void ProjectFiles::newEmpty() {

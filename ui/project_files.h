@@ -43,6 +43,9 @@ class ProjectFiles : public QObject {
  private:
   void remember(const QString& path);
   void load(std::shared_ptr<const Project> project, bool onlyNew);
+  void showPart(const std::string& projectPath, const LoadedData& part);
+  /// A sample of a scan whose whole could not be read would pass for it.
+  void dropUnfinished(const Project& wanted);
   void noteOutcome(const std::vector<std::string>& notes);
 
   Session& m_session;

@@ -4,6 +4,7 @@
 #include "app/scan_loading.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <filesystem>
 #include <span>
@@ -11,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "app/scan_source.h"
+#include "app/scan_surface.h"
 #include "cloud/store_folder.h"
 #include "cloud/store_index.h"
 #include "io/reader_registry.h"
@@ -18,22 +20,6 @@
 namespace alidade {
 
 namespace {
-
-constexpr std::uint64_t kBatch = 100000;
-
-/// Null where no scanner's grid is known.
-std::shared_ptr<const OccluderMesh> surfaceOf(const PointStore& store, const std::vector<Station>& stations,
-                                              const Progress& progress) {
-  if (stations.empty() || !store.attribute("row") || !store.attribute("column")) return nullptr;
-  OccluderMeshBuilder builder(stations);
-  for (std::uint64_t first = 0; first < store.pointCount() && !progress.cancelled(); first += kBatch) {
-    progress.report(static_cast<double>(first) / static_cast<double>(store.pointCount()), "Joining the scanner's grid");
-    builder.add(store.batch(first, std::min(kBatch, store.pointCount() - first)));
-  }
-  if (progress.cancelled()) return nullptr;
-  auto mesh = std::make_shared<const OccluderMesh>(builder.build());
-  return mesh->packs.empty() ? nullptr : mesh;
-}
 
 /// From this many points on a scan is indexed on disk rather than built in memory.
 constexpr std::uint64_t kIndexedPoints = 20'000'000;
@@ -67,10 +53,27 @@ Result<StoreFolder> keptStore(const ScanSource& source, const Progress& progress
   return openStore(path);
 }
 
+double secondsSince(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// "Reading hall.las: 3.1 of 10.0 M points, 4.2 Mpts/s".
+std::string readingText(const Scan& scan, std::uint64_t points, double seconds) {
+  std::string text = fmt::format("Reading {}", std::filesystem::path(scan.source.path).filename().string());
+  if (seconds > 0.5)
+    text += fmt::format(": {:.1f} of {:.1f} M points, {:.1f} Mpts/s", static_cast<double>(points) / 1e6,
+                        static_cast<double>(scan.info.pointCount) / 1e6, static_cast<double>(points) / seconds / 1e6);
+  return text;
+}
+
 Result<std::shared_ptr<const PointStore>> readStore(const Scan& scan, std::vector<ImportWarning>& warnings,
                                                     const Progress& progress) {
   const auto reader = ReaderRegistry::instance().findAs<ScanReader>(scan.source.path);
   if (!reader) return fail(reader.error());
+  const auto start = std::chrono::steady_clock::now();
+  std::uint64_t points = 0;
+  const Progress outer = progress.part(0.0, 0.5);
+  const Progress reading([&](double fraction, std::string_view) { outer.report(fraction, readingText(scan, points, secondsSince(start))); });
   PointStoreBuilder::Options options;
   options.scale = scan.info.scale;
   options.offset = scan.info.offset;
@@ -78,10 +81,11 @@ Result<std::shared_ptr<const PointStore>> readStore(const Scan& scan, std::vecto
   auto read = (*reader)->read(
       scan.source.path,
       [&](PointBatch& batch) {
+        points += batch.size();
         builder.add(std::move(batch));
         return !progress.cancelled();
       },
-      progress.part(0.0, 0.5));
+      reading);
   if (!read) return fail(read.error());
   if (progress.cancelled()) return fail(cancelledError());
   warnings.insert(warnings.end(), read->begin(), read->end());
@@ -91,20 +95,50 @@ Result<std::shared_ptr<const PointStore>> readStore(const Scan& scan, std::vecto
   return builder.build(progress.part(0.5, 1.0));
 }
 
-/// Joining a larger store's grids would read all of it before the first picture.
 std::vector<ScanLayer> layersOf(const StoreFolder& store, int number, const Progress& progress) {
   std::vector<ScanLayer> layers;
   for (const StorePart& part : store.parts) {
     ScanLayer layer;
     layer.points = {part.points, std::make_shared<const PointSummary>(summarise(*part.points)), number};
-    if (part.points->pointCount() < kIndexedPoints)
-      layer.surface = surfaceOf(*part.points, part.manifest.info.stations, progress);
+    layer.surface = surfaceOfPart(store.path, part, progress);
     layers.push_back(std::move(layer));
   }
   return layers;
 }
 
 }  // namespace
+
+Result<std::vector<ScanLayer>> sampleScan(const Scan& scan, int number, const Progress& progress) {
+  constexpr std::uint64_t kLarge = 2'000'000, kSample = 400'000;
+  constexpr double kMostSeconds = 1.0;
+  if (scan.info.pointCount < kLarge || isStoreFolder(scan.source.path)) return std::vector<ScanLayer>{};
+  const auto reader = ReaderRegistry::instance().findAs<ScanReader>(scan.source.path);
+  if (!reader) return fail(reader.error());
+  // A store that is kept from an earlier session opens sooner.
+  const std::string identity = scanSourceOf(**reader, scan.source.path, scan.info, nullptr).identity;
+  if (scan.info.pointCount >= kIndexedPoints && isStoreFolder(keptStorePath(identity))) return std::vector<ScanLayer>{};
+  PointStoreBuilder::Options options;
+  options.scale = scan.info.scale;
+  options.offset = scan.info.offset;
+  PointStoreBuilder builder(options);
+  const auto start = std::chrono::steady_clock::now();
+  auto sampled = (*reader)->sample(
+      scan.source.path, kSample,
+      [&](PointBatch& batch) {
+        builder.add(std::move(batch));
+        return !progress.cancelled() && secondsSince(start) < kMostSeconds;
+      },
+      Progress());
+  if (!sampled) return fail(sampled.error());
+  if (progress.cancelled()) return fail(cancelledError());
+  const auto store = builder.build(progress);
+  if (!store) return fail(store.error());
+  if ((*store)->pointCount() == 0) return std::vector<ScanLayer>{};
+  ScanLayer layer;
+  layer.points = {*store, std::make_shared<const PointSummary>(summarise(**store)), number};
+  layer.sampleOf = scan.info.pointCount;
+  return std::vector<ScanLayer>{std::move(layer)};
+}
 
 Result<std::vector<ScanLayer>> loadScan(const Scan& scan, int number, std::vector<ImportWarning>& warnings,
                                         const Progress& progress) {
@@ -126,7 +160,7 @@ Result<std::vector<ScanLayer>> loadScan(const Scan& scan, int number, std::vecto
   if (!store) return fail(store.error());
   ScanLayer layer;
   layer.points = {*store, std::make_shared<const PointSummary>(summarise(**store)), number};
-  layer.surface = surfaceOf(**store, scan.info.stations, progress.part(0.8, 1.0));
+  layer.surface = joinGrids(**store, scan.info.stations, progress.part(0.8, 1.0));
   if (progress.cancelled()) return fail(cancelledError());
   return std::vector<ScanLayer>{std::move(layer)};
 }

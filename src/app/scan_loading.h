@@ -18,4 +18,8 @@ namespace alidade {
 Result<std::vector<ScanLayer>> loadScan(const Scan& scan, int number, std::vector<ImportWarning>& warnings,
                                         const Progress& progress);
 
+/// A picture of a large scan before it is read whole, within about a second: an even sample where the format allows one, else what was
+/// read until then. Empty for a scan that is quicker read than sampled, and for a point store.
+Result<std::vector<ScanLayer>> sampleScan(const Scan& scan, int number, const Progress& progress);
+
 }  // namespace alidade

@@ -26,8 +26,18 @@ Result<std::shared_ptr<const DesignModel>> loadDesign(const Design& design, std:
 
 }  // namespace
 
-Result<LoadOutcome> loadData(const Project& project, const Progress& progress) {
+Result<LoadOutcome> loadData(const Project& project, const Progress& progress, const PartLoaded& partLoaded) {
   LoadOutcome outcome;
+  const auto show = [&](LoadedData part) {
+    if (partLoaded && !progress.cancelled()) partLoaded(std::move(part));
+  };
+  for (const Scan& scan : project.scans) {
+    if (!partLoaded || progress.cancelled()) break;
+    progress.report(0, "First picture");
+    // A scan that cannot be sampled is read, or refused with its reason, below.
+    if (auto sample = sampleScan(scan, static_cast<int>(&scan - project.scans.data()), progress.part(0, 0)); sample && !sample->empty())
+      show({{{scan.id, std::move(*sample)}}, {}});
+  }
   const double parts = std::max<std::size_t>(1, project.scans.size() + project.designs.size());
   double done = 0;
   const auto nextPart = [&] {
@@ -38,17 +48,37 @@ Result<LoadOutcome> loadData(const Project& project, const Progress& progress) {
   for (const Design& design : project.designs) {
     auto model = loadDesign(design, outcome.warnings, nextPart());
     if (progress.cancelled()) return fail(cancelledError());
-    if (model) outcome.data.designs[design.id] = std::move(*model);
-    else outcome.problems.push_back(model.error());
+    if (model) {
+      outcome.data.designs[design.id] = std::move(*model);
+      show({{}, {{design.id, outcome.data.designs[design.id]}}});
+    } else {
+      outcome.problems.push_back(model.error());
+    }
   }
   for (const Scan& scan : project.scans) {
     auto layers = loadScan(scan, static_cast<int>(&scan - project.scans.data()), outcome.warnings, nextPart());
     if (progress.cancelled()) return fail(cancelledError());
-    if (layers) outcome.data.scans[scan.id] = std::move(*layers);
-    else outcome.problems.push_back(layers.error());
+    if (layers) {
+      outcome.data.scans[scan.id] = std::move(*layers);
+      show({{{scan.id, outcome.data.scans[scan.id]}}, {}});
+    } else {
+      outcome.problems.push_back(layers.error());
+    }
   }
   progress.report(1.0, "Loaded");
   return outcome;
+}
+
+void mergeInto(LoadedData& data, const LoadedData& part) {
+  for (const auto& [id, scan] : part.scans) data.scans[id] = scan;
+  for (const auto& [id, design] : part.designs) data.designs[id] = design;
+}
+
+void dropSamples(LoadedData& data, const Project& project) {
+  std::erase_if(data.scans, [&](const auto& entry) {
+    const bool sample = std::ranges::any_of(entry.second, [](const ScanLayer& layer) { return layer.sampleOf > 0; });
+    return sample && std::ranges::any_of(project.scans, [&](const Scan& scan) { return scan.id == entry.first; });
+  });
 }
 
 /// Decoders of videos stay open: seeking forward one frame is then one decode.

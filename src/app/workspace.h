@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -30,7 +31,14 @@ struct LoadOutcome {
   std::vector<Error> problems;
   std::vector<ImportWarning> warnings;
 };
-Result<LoadOutcome> loadData(const Project& project, const Progress& progress);
+/// What can be shown before all is there: an even sample of each large scan at once, then each design and scan as it is
+/// ready. Called on the loading thread; later parts replace earlier ones of the same id.
+using PartLoaded = std::function<void(LoadedData part)>;
+Result<LoadOutcome> loadData(const Project& project, const Progress& progress, const PartLoaded& partLoaded = {});
+/// Takes over what a part holds.
+void mergeInto(LoadedData& data, const LoadedData& part);
+/// Leaves out the samples of these scans whose whole never came.
+void dropSamples(LoadedData& data, const Project& project);
 
 /// Decodes frames, keeping the last few. Thread-safe.
 class PictureCache {

@@ -8,10 +8,10 @@
 #include <fmt/format.h>
 
 #include "app/scan_source.h"
+#include "app/scan_surface.h"
 #include "cli/command.h"
 #include "cloud/store_folder.h"
 #include "cloud/store_index.h"
-#include "io/reader_registry.h"
 
 namespace alidade::cli {
 
@@ -43,19 +43,18 @@ Result<Answer> index(const Arguments& arguments, const Progress& progress) {
   std::vector<ImportWarning> warnings;
   std::vector<ScanSource> sources;
   for (const std::string& path : arguments.scans) {
-    const auto reader = ReaderRegistry::instance().findAs<ScanReader>(path);
-    if (!reader) return fail(reader.error());
-    const auto info = (*reader)->inspect(path);
-    if (!info) return fail(info.error());
-    sources.push_back(scanSourceOf(**reader, path, *info, &warnings));
+    auto source = openScan(path, &warnings);
+    if (!source) return fail(source.error());
+    sources.push_back(std::move(*source));
   }
   IndexOptions options;
   options.memoryBytes = *parseMemory(arguments.memory);
   options.levels = arguments.levels == "random" ? LevelKind::Random : LevelKind::BlueNoise;
   options.seed = arguments.seed;
   options.append = arguments.append;
-  const auto report = indexScans(sources, arguments.output, options, progress);
+  const auto report = indexScans(sources, arguments.output, options, progress.part(0, 0.9));
   if (!report) return fail(report.error());
+  if (const auto store = openStore(arguments.output)) keepSurfaces(*store, progress.part(0.9, 1));
   if (report->dropped > 0)
     warnings.push_back({fmt::format("{} points without usable coordinates were left out", report->dropped), arguments.output});
 
