@@ -19,6 +19,7 @@
 #include <QToolButton>
 #include <QVBoxLayout>
 
+#include "ui/cleaning_panel.h"
 #include "ui/command_palette.h"
 #include "ui/display_panel.h"
 #include "ui/export_dialog.h"
@@ -41,7 +42,7 @@ namespace alidade {
 
 namespace {
 
-constexpr int kLayoutVersion = 2;
+constexpr int kLayoutVersion = 3;
 
 }  // namespace
 
@@ -56,6 +57,7 @@ MainWindow::MainWindow(QWidget* parent)
   resize(1600, 980);
   m_files = new ProjectFiles(*m_session, this);
   m_refinement = new PoseRefinement(*m_session, this);
+  m_scanWork = new ScanWork(*m_session, this);
   m_playback = new Playback(*m_session, this);
   m_actions = new Actions(this);
   m_tree = new ProjectTreeModel(*m_session, this);
@@ -181,6 +183,8 @@ void MainWindow::buildDocks() {
   m_pointsDock = dock(tr("Points"), QStringLiteral("pointsDock"), new PointsPanel(*m_session), Qt::RightDockWidgetArea);
   m_resectionDock =
       dock(tr("Refine pose"), QStringLiteral("resectionDock"), m_resectionPanel, Qt::RightDockWidgetArea);
+  m_cleaningPanel = new CleaningPanel(*m_session, *m_scanWork);
+  m_cleaningDock = dock(tr("Clean scans"), QStringLiteral("cleaningDock"), m_cleaningPanel, Qt::RightDockWidgetArea);
   m_messageDock = dock(tr("Messages"), QStringLiteral("messageDock"), new MessagePanel(m_session->messages()),
                        Qt::BottomDockWidgetArea);
 
@@ -215,10 +219,12 @@ void MainWindow::defaultLayout() {
   splitDockWidget(m_propertiesDock, m_displayDock, Qt::Vertical);
   tabifyDockWidget(m_propertiesDock, m_resectionDock);
   tabifyDockWidget(m_displayDock, m_pointsDock);
+  tabifyDockWidget(m_displayDock, m_cleaningDock);
   addDockWidget(Qt::BottomDockWidgetArea, m_messageDock);
   m_propertiesDock->raise();
   m_displayDock->raise();
   m_resectionDock->hide();
+  m_cleaningDock->hide();
   m_messageDock->hide();
   resizeDocks({m_projectDock, m_propertiesDock}, {270, 300}, Qt::Horizontal);
   resizeDocks({m_propertiesDock, m_displayDock}, {380, 400}, Qt::Vertical);

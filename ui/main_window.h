@@ -21,6 +21,7 @@ class QStackedWidget;
 
 namespace alidade {
 
+class CleaningPanel;
 class CommandPalette;
 class ExportDialog;
 class HoldKeys;
@@ -29,6 +30,7 @@ class OverlayView;
 class ProjectPanel;
 class ProjectTreeModel;
 class ResectionPanel;
+class ScanWork;
 class SceneWidget;
 class ValueSlider;
 class WelcomePage;
@@ -44,6 +46,7 @@ class MainWindow : public QMainWindow {
 
   Session& session() { return *m_session; }
   ProjectFiles& files() { return *m_files; }
+  ScanWork& scanWork() { return *m_scanWork; }
   PoseRefinement& refinement() { return *m_refinement; }
   Playback& playback() { return *m_playback; }
   const Actions& actions() const { return *m_actions; }
@@ -105,6 +108,7 @@ class MainWindow : public QMainWindow {
   std::unique_ptr<Session> m_session;
   ProjectFiles* m_files;
   PoseRefinement* m_refinement;
+  ScanWork* m_scanWork;
   Playback* m_playback;
   Actions* m_actions;
   ProjectTreeModel* m_tree;
@@ -117,6 +121,7 @@ class MainWindow : public QMainWindow {
   SceneWidget* m_scene;
   ProjectPanel* m_projectPanel;
   ResectionPanel* m_resectionPanel;
+  CleaningPanel* m_cleaningPanel;
   ValueSlider* m_density;
   ValueSlider* m_pointSize;
   CommandPalette* m_palette;
@@ -124,7 +129,8 @@ class MainWindow : public QMainWindow {
   QToolBar* m_toolBar;
   QWidget* m_timeline;
   QList<QDockWidget*> m_docks;
-  QDockWidget *m_projectDock, *m_propertiesDock, *m_displayDock, *m_pointsDock, *m_resectionDock, *m_messageDock;
+  QDockWidget *m_projectDock, *m_propertiesDock, *m_displayDock, *m_pointsDock, *m_resectionDock, *m_cleaningDock,
+      *m_messageDock;
   QMenu* m_recentMenu;
   std::shared_ptr<MeasuredDistances> m_measurements;
   bool m_workspaceShown = false;

@@ -18,6 +18,7 @@
 #include <QToolBar>
 
 #include "app/version.h"
+#include "ui/cleaning_panel.h"
 #include "ui/command_palette.h"
 #include "ui/export_dialog.h"
 #include "ui/format.h"
@@ -96,7 +97,7 @@ void MainWindow::buildMenus() {
                       id(C::FirstFrame), id(C::LastFrame)});
   fill(tr("A&lign"), {id(C::Resection), id(C::RefinePose), id(C::AcceptPose), id(C::DropPose)});
   fill(tr("&Inspect"), {id(C::ToolSelect), id(C::ToolPick), id(C::ToolMeasure), id(C::ClearMeasurements), -1,
-                        id(C::HideSelected), id(C::IsolateStorey), id(C::ShowAllElements)});
+                        id(C::HideSelected), id(C::IsolateStorey), id(C::ShowAllElements), -1, id(C::ShowCleaning)});
   fill(tr("A&nnotate"), {id(C::ToolText), id(C::ToolArrow), id(C::ToolCallout), -1, id(C::Delete)});
   fill(tr("&Help"), {id(C::Keys), id(C::CommandPalette), -1, id(C::About)});
   for (QMenu* menu : findChildren<QMenu*>()) menu->setToolTipsVisible(true);
@@ -309,6 +310,12 @@ void MainWindow::connectViewActions() {
     m_pointsDock->show();
     m_pointsDock->raise();
   });
+  connect(a[C::ShowCleaning], &QAction::triggered, this, [this] {
+    m_cleaningDock->show();
+    m_cleaningDock->raise();
+  });
+  connect(a[C::CleanScan], &QAction::triggered, m_cleaningPanel, &CleaningPanel::clean);
+  connect(a[C::RegisterScan], &QAction::triggered, m_cleaningPanel, &CleaningPanel::registerScan);
   const std::pair<Command, Theme> themes[] = {
       {C::ThemeDark, Theme::Dark}, {C::ThemeLight, Theme::Light}, {C::ThemeContrast, Theme::HighContrast}};
   for (const auto& [command, theme] : themes) {

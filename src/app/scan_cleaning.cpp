@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "app/scan_source.h"
 #include "io/reader_registry.h"
 
 namespace alidade {
@@ -33,14 +34,11 @@ struct Positions {
 };
 
 Result<Positions> readPositions(const std::string& path, const Progress& progress) {
-  const auto reader = ReaderRegistry::instance().findAs<ScanReader>(path);
-  if (!reader) return fail(reader.error());
-  auto info = (*reader)->inspect(path);
-  if (!info) return fail(info.error());
   Positions positions;
-  positions.info = std::move(*info);
-  auto warnings = (*reader)->read(
-      path,
+  const auto source = openScan(path, &positions.warnings);
+  if (!source) return fail(source.error());
+  positions.info = source->info;
+  const auto read = source->read(
       [&](PointBatch& batch) {
         const auto append = [&](auto& to, const auto& from) {
           // A column that not all batches have is of no use.
@@ -52,12 +50,11 @@ Result<Positions> readPositions(const std::string& path, const Progress& progres
         return true;
       },
       progress);
-  if (!warnings) return fail(warnings.error());
+  if (!read) return fail(read.error());
   if (positions.world.empty()) return fail("The scan has no points", path, "Choose another scan");
   if (positions.world.size() >= UINT32_MAX) return fail("The scan has too many points for this", path, "Split it");
   if (positions.scanner.size() != positions.world.size()) positions.scanner.clear();
   if (positions.normal.size() != positions.world.size()) positions.normal.clear();
-  positions.warnings = std::move(*warnings);
   return positions;
 }
 
@@ -94,12 +91,11 @@ bool sameFile(const std::string& a, const std::string& b) {
 /// The chosen points of the file, with their new columns, to the sink.
 Result<void> writeChosen(const std::string& source, const Survivors& survivors, const KeepMask& ground, const std::vector<glm::vec3>& normals,
                          ScanSink& sink, const Progress& progress) {
-  const auto reader = ReaderRegistry::instance().findAs<ScanReader>(source);
-  if (!reader) return fail(reader.error());
+  const auto scan = openScan(source, nullptr);
+  if (!scan) return fail(scan.error());
   std::size_t next = 0, first = 0;
   std::optional<Error> failure;
-  const auto read = (*reader)->read(
-      source,
+  const auto read = scan->read(
       [&](PointBatch& batch) {
         std::vector<std::uint32_t> chosen;
         const std::size_t from = next;
@@ -195,6 +191,38 @@ Result<Registration> registerScanFiles(const std::string& moving, const std::str
   auto found = registerScan(a->world, b->world, options, progress.part(0.4, 1.0));
   if (!found) return fail(isCancelled(found.error()) ? found.error() : found.error().in(moving + " to " + fixed));
   return found;
+}
+
+Result<void> moveScan(const std::string& source, const std::string& target, const RigidTransform& targetFromSource, const Progress& progress) {
+  if (sameFile(source, target)) return fail("A scan is not moved in place", target, "Name another file for the moved scan");
+  const auto writer = ReaderRegistry::instance().findWriter(target);
+  if (!writer) return fail(writer.error());
+  if ((*writer)->isTree()) return fail("A moved scan is not written as a tree", target, "Write it as LAS or LAZ");
+  const auto scan = openScan(source, nullptr);
+  if (!scan) return fail(scan.error());
+  ScanWriteOptions options;
+  options.info = scan->info;
+  for (Station& station : options.info.stations) station.worldFromScanner = targetFromSource * station.worldFromScanner;
+  const Bounds& from = scan->info.bounds;
+  options.info.bounds = Bounds{};
+  for (int corner = 0; corner < 8 && !from.empty(); ++corner)
+    options.info.bounds.add(targetFromSource * glm::dvec3((corner & 1 ? from.max : from.min).x, (corner & 2 ? from.max : from.min).y,
+                                                          (corner & 4 ? from.max : from.min).z));
+  auto sink = (*writer)->create(target, options);
+  if (!sink) return fail(sink.error());
+  Result<void> added;
+  const auto read = scan->read(
+      [&](PointBatch& batch) {
+        for (glm::dvec3& p : batch.position) p = targetFromSource * p;
+        for (glm::vec3& n : batch.normal) n = glm::vec3(targetFromSource.rotation * glm::dvec3(n));
+        added = (*sink)->add(batch, std::nullopt);
+        return added.has_value();
+      },
+      progress);
+  if (!read) return fail(read.error());
+  if (!added) return fail(added.error());
+  if (progress.cancelled()) return fail(cancelledError());
+  return (*sink)->finish();
 }
 
 Result<SurfaceSummary> meshScan(const std::string& source, const std::string& target, const SurfaceOrder& order, const Progress& progress) {

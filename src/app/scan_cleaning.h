@@ -44,6 +44,10 @@ Result<ScanCleaningSummary> cleanScan(const std::string& source, const std::stri
 Result<Registration> registerScanFiles(const std::string& moving, const std::string& fixed, const RegistrationOptions& options,
                                        const Progress& progress);
 
+/// Writes a scan anew where a transform puts it: points, normals and stations; coordinates are rounded to the source's own
+/// step again. Errors as for cleanScan.
+Result<void> moveScan(const std::string& source, const std::string& target, const RigidTransform& targetFromSource, const Progress& progress);
+
 struct SurfaceOrder {
   std::optional<GreedyOptions> greedy;    ///< one of the two
   std::optional<PoissonOptions> poisson;
