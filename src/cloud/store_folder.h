@@ -22,6 +22,7 @@ namespace alidade {
 ///             nodes.bin      nodes and their places (store_data.h)
 ///             tables.bin     u32, cumulative counts a level step, node after node
 ///             part.json      a manifest of this part alone
+///             surface.bin    what its stations saw, where that was joined since; no part of the checks here
 ///   part-0002.partial/       work in progress; no part of the store
 struct StorePart {
   PartManifest manifest;

@@ -77,6 +77,7 @@ TEST(Convert, LazCopcStoreAndBackKeepsEveryPointAndWhatTheHeaderSays) {
   expectConverted(las, laz);
   expectConverted(laz, copc);
   ASSERT_EQ(alidadeCli("index " + quoted(copc) + " -o " + quoted(store)).exitCode, 0);
+  EXPECT_TRUE(fs::exists(store / "part-0001/surface.bin")) << "what the stations saw is kept beside the points";
   expectConverted(store, again);
   expectConverted(store, back);
   const auto source = pointsOf(las);
