@@ -70,7 +70,8 @@ void handToHost(VkCommandBuffer commands, VkPipelineStageFlags2 stage, VkAccessF
   handOver(commands, stage, access, VK_PIPELINE_STAGE_2_HOST_BIT, VK_ACCESS_2_HOST_READ_BIT);
 }
 
-constexpr VkAccessFlags2 kStorage = VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
+constexpr VkAccessFlags2 kStorage =
+    VK_ACCESS_2_SHADER_STORAGE_READ_BIT | VK_ACCESS_2_SHADER_STORAGE_WRITE_BIT;
 
 VkBufferImageCopy wholeImage(const GpuImage::State& image) {
   VkBufferImageCopy region{};

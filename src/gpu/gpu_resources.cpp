@@ -132,7 +132,7 @@ Result<GpuBuffer> GpuDevice::makeBuffer(GpuBufferUse use, std::size_t bytes) {
   VkMemoryRequirements needs{};
   vkGetBufferMemoryRequirements(device, buffer->get(), &needs);
   const bool isHidden = use == GpuBufferUse::DeviceStorage;
-  const VkMemoryPropertyFlags wanted = isHidden                         ? VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT
+  const VkMemoryPropertyFlags wanted = isHidden                        ? VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT
                                        : use == GpuBufferUse::Readback ? VK_MEMORY_PROPERTY_HOST_CACHED_BIT
                                                                        : 0;
   auto memory = m_core->allocate(needs, wanted, isHidden ? 0 : kHost);

@@ -110,8 +110,10 @@ class VulkanSplatter final : public SplatDevice {
 
 Result<void> VulkanSplatter::makePipelines() {
   using Kind = GpuBindingKind;
-  std::vector<Kind> kinds{Kind::Uniform, Kind::Storage, Kind::Storage, Kind::Storage, Kind::Storage, Kind::Storage};
-  const auto make = [&](GpuPipeline& into, const char* shader, std::vector<std::uint32_t> constants) -> Result<void> {
+  std::vector<Kind> kinds{Kind::Uniform, Kind::Storage, Kind::Storage,
+                          Kind::Storage, Kind::Storage, Kind::Storage};
+  const auto make = [&](GpuPipeline& into, const char* shader,
+                        std::vector<std::uint32_t> constants) -> Result<void> {
     auto pipeline = m_device->makePipeline(GpuComputeDescription{shader, kinds, std::move(constants)});
     if (!pipeline) return fail(pipeline.error());
     into = std::move(*pipeline);
@@ -257,7 +259,8 @@ Result<const void*> VulkanSplatter::draw(std::span<const SplatRun* const> runs, 
 
 }  // namespace
 
-Result<std::unique_ptr<SplatDevice>> createVulkanSplatter(const std::shared_ptr<GpuDevice>& device, bool wide) {
+Result<std::unique_ptr<SplatDevice>> createVulkanSplatter(const std::shared_ptr<GpuDevice>& device,
+                                                          bool wide) {
   auto splatter = std::make_unique<VulkanSplatter>(device, wide);
   if (auto made = splatter->makePipelines(); !made) return fail(made.error());
   return splatter;

@@ -71,7 +71,8 @@ CellNormals cellNormals(std::span<const DisplayPoint> points, const glm::dmat3& 
     const glm::vec3 within = glm::vec3(at - (c << cells.shift)) / cell;
     sums[c.x + CellNormals::kPerEdge * (c.y + CellNormals::kPerEdge * c.z)].add(within.x, within.y, within.z);
   }
-  for (std::size_t i = 0; i < sums.size(); ++i) cells.normal[i] = glm::vec3(cameraFromWorld * normalOf(sums[i]));
+  for (std::size_t i = 0; i < sums.size(); ++i)
+    cells.normal[i] = glm::vec3(cameraFromWorld * normalOf(sums[i]));
   return cells;
 }
 

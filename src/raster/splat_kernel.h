@@ -27,7 +27,8 @@ struct SplatView {
   int width, height;
   /// Footprint in pixels: clamp(sizeTimesDepth / z, smallest, largest).
   float sizeTimesDepth, smallest, largest;
-  /// Three floats a cell as CellNormals has them, with its cells' first step and size; null: footprints face the eye.
+  /// Three floats a cell as CellNormals has them, with its cells' first step and size; null: footprints face
+  /// the eye.
   const float* cellNormals;
   std::int32_t cellLow[3], cellShift;
   bool onePixel;  ///< every footprint is one pixel

@@ -153,9 +153,12 @@ ALIDADE_LENS_INLINE void put(const SplatTarget& target, std::size_t at, std::uin
 
 /// Where in its pixel a point fell, as PlaceInPixel reads it; u and v half a pixel on, so that floors name
 /// the pixel. Means nothing for lanes outside the picture.
-ALIDADE_LENS_INLINE Words placeInPixel(const Floats& u, const Floats& v, const Ints& column, const Ints& row) {
-  const Floats inU = u - __builtin_convertvector(column, Floats), inV = v - __builtin_convertvector(row, Floats);
-  const Ints code = __builtin_convertvector(64.0f * inU, Ints) * 64 + __builtin_convertvector(64.0f * inV, Ints);
+ALIDADE_LENS_INLINE Words placeInPixel(const Floats& u, const Floats& v, const Ints& column,
+                                       const Ints& row) {
+  const Floats inU = u - __builtin_convertvector(column, Floats),
+               inV = v - __builtin_convertvector(row, Floats);
+  const Ints code =
+      __builtin_convertvector(64.0f * inU, Ints) * 64 + __builtin_convertvector(64.0f * inV, Ints);
   return reinterpret_cast<Words>(code);
 }
 
@@ -167,19 +170,19 @@ ALIDADE_LENS_INLINE Words placeInPixel(const Floats& u, const Floats& v, const I
 namespace alidade {
 namespace {
 
-/// A footprint's inverse depth over the picture: linear there, as a plane's is but for what the lens bends it within a
-/// few pixels. It ends where its depth leaves the point's by more than half its width in the world, so that a
-/// surface seen at a grazing angle is not fattened; its middle pixel stays.
+/// A footprint's inverse depth over the picture: linear there, as a plane's is but for what the lens bends it
+/// within a few pixels. It ends where its depth leaves the point's by more than half its width in the world,
+/// so that a surface seen at a grazing angle is not fattened; its middle pixel stays.
 struct Tilt {
   float inverse = 0, alongU = 0, alongV = 0;
   float least = 0, most = 0;
   bool flat = true;  ///< of one depth
 };
 
-/// The plane through a point with normal n, n·P = d: 1/z = n·(x, y, 1) / d over undistorted x, y. `du`, `dv`: how
-/// u and v change with x and with y.
-ALIDADE_LENS_INLINE Tilt tiltOf(const SplatView& view, const float* normal, float x, float y, float z, float size,
-                                const float* du, const float* dv) {
+/// The plane through a point with normal n, n·P = d: 1/z = n·(x, y, 1) / d over undistorted x, y. `du`, `dv`:
+/// how u and v change with x and with y.
+ALIDADE_LENS_INLINE Tilt tiltOf(const SplatView& view, const float* normal, float x, float y, float z,
+                                float size, const float* du, const float* dv) {
   Tilt tilt;
   const float facing = normal[0] * x + normal[1] * y + normal[2];
   const float determinant = du[0] * dv[1] - du[1] * dv[0];
@@ -205,7 +208,8 @@ void drawFootprint(const SplatView& view, float u, float v, float size, float z,
   const int top = static_cast<int>(std::floor(v - half)) + 1, bottom = static_cast<int>(std::floor(v + half));
   const int x0 = left < 0 ? 0 : left, x1 = right < view.width ? right : view.width - 1;
   const int y0 = top < 0 ? 0 : top, y1 = bottom < view.height ? bottom : view.height - 1;
-  const int middleX = static_cast<int>(std::floor(u + 0.5f)), middleY = static_cast<int>(std::floor(v + 0.5f));
+  const int middleX = static_cast<int>(std::floor(u + 0.5f)),
+            middleY = static_cast<int>(std::floor(v + 0.5f));
   // A disc of two pixels and less is its square, else it could miss every centre.
   const float radiusSquared = view.round && size > 2.0f ? half * half : size * size;
   for (int y = y0; y <= y1; ++y) {

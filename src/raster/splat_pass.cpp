@@ -100,7 +100,8 @@ const void* drawOnDevice(SplatDevice* device, std::span<const SplatRun> runs, in
 }
 
 template <class Pixel>
-void drawPlanes(std::span<const SplatRun> runs, int width, int height, SplatPayload payload, SplatDevice* device,
+void drawPlanes(std::span<const SplatRun> runs, int width, int height, SplatPayload payload,
+                SplatDevice* device,
                 const std::function<void(const SplatPlanes<Pixel>&, std::size_t, std::size_t)>& merge) {
   const SplatKernel& kernel = splatKernel();
   const std::size_t pixels = static_cast<std::size_t>(width) * height;
@@ -183,21 +184,22 @@ bool reachesBeyond(double radius, const Bounds& bounds, const RigidTransform& ca
   return !(radiusOf(bounds, cameraFromWorld) <= radius);
 }
 
-/// Pixels that a point moves for each part that 1/z is off and each unit of its radius on the image plane: the
-/// focal length times the most that the lens stretches a radius, over the picture.
+/// Pixels that a point moves for each part that 1/z is off and each unit of its radius on the image plane:
+/// the focal length times the most that the lens stretches a radius, over the picture.
 double pixelsPerRadius(const Camera& camera) {
   constexpr int kSteps = 16;
   constexpr double kPart = 1e-4;
   double most = 0.0;
   for (int row = 0; row <= kSteps; ++row) {
     for (int column = 0; column <= kSteps; ++column) {
-      const auto ray = camera.unproject({camera.width() * (column / double(kSteps)) - 0.5,
-                                         camera.height() * (row / double(kSteps)) - 0.5});
+      const auto ray = camera.unproject(
+          {camera.width() * (column / double(kSteps)) - 0.5, camera.height() * (row / double(kSteps)) - 0.5});
       if (!ray || !(ray->z > 0.0)) continue;
       const glm::dvec2 at = glm::dvec2(*ray) / ray->z;
       const double radius = glm::length(at);
       if (radius < 1e-6) continue;
-      const glm::dvec2 moved = camera.projectUnchecked({at * (1.0 - kPart), 1.0}) - camera.projectUnchecked({at, 1.0});
+      const glm::dvec2 moved =
+          camera.projectUnchecked({at * (1.0 - kPart), 1.0}) - camera.projectUnchecked({at, 1.0});
       most = std::max(most, glm::length(moved) / (kPart * radius));
     }
   }

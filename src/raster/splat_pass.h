@@ -66,8 +66,8 @@ SplatView baseView(const Camera& camera, const SplatOptions& options);
 SplatRun makeRun(const PointStore& store, const SelectedRange& range, const RigidTransform& cameraFromWorld,
                  const SplatView& base, const SplatOptions& options);
 
-/// Fits the surface's cells of every run that draws footprints of more than a pixel, and points the runs at them;
-/// the result must outlive the drawing.
+/// Fits the surface's cells of every run that draws footprints of more than a pixel, and points the runs at
+/// them; the result must outlive the drawing.
 std::vector<CellNormals> layFootprints(std::span<SplatRun> runs, const RigidTransform& cameraFromWorld);
 
 /// Draws the runs on all cores, one private plane a thread, then hands the planes to `merge` for

@@ -32,8 +32,8 @@ ALIDADE_LENS_INLINE Lanes lanesOf(const Ints& mask) {
 /// Lanes of `inside` whose depth is at most that of their pixel, `scale` bytes a pixel.
 template <int scale>
 ALIDADE_LENS_INLINE Lanes mayWin(const void* depths, const Ints& at, const Words& depth, Lanes inside) {
-  const __m512i old = _mm512_mask_i32gather_epi32(_mm512_setzero_si512(), inside, reinterpret_cast<__m512i>(at),
-                                                  depths, scale);
+  const __m512i old = _mm512_mask_i32gather_epi32(_mm512_setzero_si512(), inside,
+                                                  reinterpret_cast<__m512i>(at), depths, scale);
   return _mm512_mask_cmple_epu32_mask(inside, reinterpret_cast<__m512i>(depth), old);
 }
 
@@ -66,9 +66,8 @@ ALIDADE_LENS_INLINE __m256i maskOf(Lanes lanes) {
 
 template <int scale>
 ALIDADE_LENS_INLINE Lanes mayWin(const void* depths, const Ints& at, const Words& depth, Lanes inside) {
-  const __m256i old =
-      _mm256_mask_i32gather_epi32(_mm256_setzero_si256(), static_cast<const int*>(depths),
-                                  reinterpret_cast<__m256i>(at), maskOf(inside), scale);
+  const __m256i old = _mm256_mask_i32gather_epi32(_mm256_setzero_si256(), static_cast<const int*>(depths),
+                                                  reinterpret_cast<__m256i>(at), maskOf(inside), scale);
   return inside & lanesOf(depth <= reinterpret_cast<Words>(old));
 }
 
@@ -156,13 +155,15 @@ class PixelQueue {
   static constexpr unsigned kHeld = 256;
 
   ALIDADE_LENS_INLINE void drain() {
-    for (unsigned i = 0; i < m_count; ++i) put<packed>(m_target, m_at[i], m_depth[i], packed ? m_payload[i] : 0);
+    for (unsigned i = 0; i < m_count; ++i)
+      put<packed>(m_target, m_at[i], m_depth[i], packed ? m_payload[i] : 0);
     m_count = 0;
   }
 
   const SplatTarget& m_target;
   unsigned m_count = 0;
-  alignas(64) std::uint32_t m_at[kHeld + kLanes], m_depth[kHeld + kLanes], m_payload[packed ? kHeld + kLanes : 1];
+  alignas(64) std::uint32_t m_at[kHeld + kLanes], m_depth[kHeld + kLanes],
+      m_payload[packed ? kHeld + kLanes : 1];
 };
 
 template <bool packed>

@@ -106,8 +106,7 @@ void splatGroup(const std::vector<SplatLayer>& layers, const LayerGroup& group, 
       if (options.colour) images.colour.data()[i] = colourOf(options.ids ? points.colour(value) : value);
     }
   };
-  drawRuns(runs, camera.width(), camera.height(), payload, mergeDepth, mergePacked,
-           options.device);
+  drawRuns(runs, camera.width(), camera.height(), payload, mergeDepth, mergePacked, options.device);
 }
 
 }  // namespace

@@ -31,11 +31,12 @@ struct SplatOptions {
   double minimumSizePx = 1.0;
   double maximumSizePx = 16.0;
   bool round = false;
-  /// Footprints lie in the surface's plane where the points of a node show one: 1/z linear over the footprint,
-  /// foreshortened along it. Otherwise, and for fixedSize, they face the eye at their point's depth.
+  /// Footprints lie in the surface's plane where the points of a node show one: 1/z linear over the
+  /// footprint, foreshortened along it. Otherwise, and for fixedSize, they face the eye at their point's
+  /// depth.
   bool planar = true;
-  /// Every point this wide in the world, metres, before `pointSize`: Zhang (2020), whose s n r H / (z tan(fov/2))
-  /// is s w f / z with w = n r H / (f tan(fov/2)). 0: as wide as its neighbours are apart.
+  /// Every point this wide in the world, metres, before `pointSize`: Zhang (2020), whose s n r H / (z
+  /// tan(fov/2)) is s w f / z with w = n r H / (f tan(fov/2)). 0: as wide as its neighbours are apart.
   double worldSizeM = 0;
   /// MultiplyAdd: in nodes where it moves no point by more than `reciprocalErrorPx` (Vázquez and Antelo).
   Reciprocal reciprocal = Reciprocal::Division;

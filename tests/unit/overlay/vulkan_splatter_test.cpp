@@ -27,8 +27,9 @@ std::vector<Camera> lenses() {
   for (const auto& [model, parameters] : std::initializer_list<std::pair<CameraModel, std::vector<double>>>{
            {CameraModel::Pinhole, {f, f + 3, cx, cy}},
            {CameraModel::OpenCv5, {f, f, cx, cy, -0.31, 0.12, 0.001, -0.002, -0.03}},
-           {CameraModel::OpenCv14, {f, f, cx, cy, 0.1, -0.05, 0.001, -0.001, 0.01, 0.12, -0.02, 0.004, 0.001, -0.0005,
-                                    0.0008, 0.0002, 0.01, -0.02}},
+           {CameraModel::OpenCv14,
+            {f, f, cx, cy, 0.1, -0.05, 0.001, -0.001, 0.01, 0.12, -0.02, 0.004, 0.001, -0.0005, 0.0008,
+             0.0002, 0.01, -0.02}},
            {CameraModel::OpenCvFisheye, {f * 0.6, f * 0.6, cx, cy, -0.02, 0.004, -0.001, 0.0002}}})
     cameras.emplace_back(*Intrinsics::fromParameters(model, 640, 480, parameters));
   return cameras;
@@ -56,12 +57,13 @@ class VulkanSplatterTest : public testing::TestWithParam<bool> {
 };
 
 /// Both compute in floats with one order of sums, but a shader's division and square root may round otherwise
-/// and its products may fuse: a point within some 1e-4 px of a pixel's border may fall to either side. So a few
-/// pixels may have another winner; all others have the same one, at the same depth but for its last digits.
+/// and its products may fuse: a point within some 1e-4 px of a pixel's border may fall to either side. So a
+/// few pixels may have another winner; all others have the same one, at the same depth but for its last
+/// digits.
 ///
 /// Planar footprints meet in the plane they share, at depths that differ in the last digits alone: there the
-/// depth is the same, and which of the neighbours won may not be. Their slope is a difference of pixels over a small
-/// step, good to some 1e-5, which the depth feels by its part that changes over the footprint.
+/// depth is the same, and which of the neighbours won may not be. Their slope is a difference of pixels over
+/// a small step, good to some 1e-5, which the depth feels by its part that changes over the footprint.
 void expectTwins(const SplatImages& cpu, const SplatImages& gpu, const SplatOptions& options,
                  const std::string& what) {
   const bool isWide = options.maximumSizePx > 1.0;
@@ -95,15 +97,17 @@ TEST_P(VulkanSplatterTest, DrawsThePictureOfTheProcessor) {
   int lens = 0;
   for (const Camera& camera : lenses()) {
     const std::vector<SplatLayer> layers{{store, selectAll(*store, camera, kView)}};
-    for (const auto& [colour, ids] : {std::pair(false, false), std::pair(true, false), std::pair(true, true)}) {
+    for (const auto& [colour, ids] :
+         {std::pair(false, false), std::pair(true, false), std::pair(true, true)}) {
       for (const bool wide : {false, true}) {
         SplatOptions options{.colour = colour, .ids = ids, .pointSize = 1.5, .round = ids};
         options.maximumSizePx = wide ? 16.0 : 1.0;
         const SplatImages cpu = splat(layers, camera, kView, options);
         options.device = splatter.get();
         const SplatImages gpu = splat(layers, camera, kView, options);
-        expectTwins(cpu, gpu, options,
-                    std::to_string(lens) + (colour ? "_colour" : "") + (ids ? "_ids" : "") + (wide ? "_wide" : ""));
+        expectTwins(
+            cpu, gpu, options,
+            std::to_string(lens) + (colour ? "_colour" : "") + (ids ? "_ids" : "") + (wide ? "_wide" : ""));
       }
     }
     ++lens;

@@ -22,7 +22,8 @@ struct Panel {
     std::mt19937 random(7);
     std::uniform_real_distribution<double> unit(0.0, 1.0);
     const double edge = std::sqrt(glm::length(a) * glm::length(b) / static_cast<double>(count));
-    const int along = static_cast<int>(glm::length(a) / edge), across = static_cast<int>(glm::length(b) / edge);
+    const int along = static_cast<int>(glm::length(a) / edge),
+              across = static_cast<int>(glm::length(b) / edge);
     PointBatch batch;
     for (int i = 0; i < along; ++i)
       for (int j = 0; j < across; ++j)
@@ -44,13 +45,13 @@ struct Panel {
 };
 
 struct Score {
-  double meanError = 0;   ///< of the depth, relative, where both are
-  double missing = 0;     ///< of the true pixels, not covered
-  double fattened = 0;    ///< pixels covered beyond the true ones, as a part of them
+  double meanError = 0;  ///< of the depth, relative, where both are
+  double missing = 0;    ///< of the true pixels, not covered
+  double fattened = 0;   ///< pixels covered beyond the true ones, as a part of them
 };
 
-Score scoreOf(const Panel& panel, const Camera& camera, const RigidTransform& pose, const SplatOptions& options,
-              std::size_t points) {
+Score scoreOf(const Panel& panel, const Camera& camera, const RigidTransform& pose,
+              const SplatOptions& options, std::size_t points) {
   const auto store = storeFrom(panel.points(points));
   const SplatImages drawn = splat({{store, selectAll(*store, camera, pose)}}, camera, pose, options);
   double trueCount = 0, both = 0, beyond = 0, error = 0;
@@ -100,7 +101,8 @@ TEST(Footprints, DoNotFattenAGrazingWall) {
   const SplatOptions planar{.pointSize = 1.5};
   SplatOptions facing = planar;
   facing.planar = false;
-  const Score with = scoreOf(wall, camera, pose, planar, 2'000), without = scoreOf(wall, camera, pose, facing, 2'000);
+  const Score with = scoreOf(wall, camera, pose, planar, 2'000),
+              without = scoreOf(wall, camera, pose, facing, 2'000);
   RecordProperty("planar_fattened", std::to_string(with.fattened));
   RecordProperty("facing_fattened", std::to_string(without.fattened));
   EXPECT_LT(with.fattened, 0.5 * without.fattened);
@@ -125,12 +127,14 @@ TEST(Footprints, WithoutASurfaceFaceTheEye) {
   std::mt19937 random(3);
   std::normal_distribution<double> normal(0.0, 0.5);
   PointBatch batch;
-  for (int i = 0; i < 5000; ++i) batch.position.push_back({normal(random), 5 + normal(random), normal(random)});
+  for (int i = 0; i < 5000; ++i)
+    batch.position.push_back({normal(random), 5 + normal(random), normal(random)});
   const auto store = storeFrom(batch);
   const auto pose = RigidTransform::cameraLookingAt({0, 0, 0}, {0, 4, 0});
   const Camera camera = test::pinhole(640, 480, 420);
   const std::vector<SplatLayer> layers{{store, selectAll(*store, camera, pose)}};
-  const SplatImages with = splat(layers, camera, pose, {}), without = splat(layers, camera, pose, {.planar = false});
+  const SplatImages with = splat(layers, camera, pose, {}),
+                    without = splat(layers, camera, pose, {.planar = false});
   std::size_t covered = 0, different = 0;
   for (std::size_t i = 0; i < with.depth.size(); ++i) {
     covered += std::isfinite(without.depth.data()[i]);

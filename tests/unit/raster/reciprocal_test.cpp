@@ -29,8 +29,9 @@ std::vector<Camera> lenses() {
   return cameras;
 }
 
-/// Largest distance, pixels, between a point's place and where 2/R - z/R² puts it, over every point in the picture
-/// of the runs that are drawn so; in double, through the camera's own projection. And how many points that are.
+/// Largest distance, pixels, between a point's place and where 2/R - z/R² puts it, over every point in the
+/// picture of the runs that are drawn so; in double, through the camera's own projection. And how many points
+/// that are.
 struct Moved {
   double mostPx = 0;
   std::size_t points = 0;
@@ -51,7 +52,8 @@ Moved movedByMultiplyAdd(const PointStore& store, const Camera& camera, const Sp
       const auto approximate = camera.project({at.x * inverse, at.y * inverse, 1.0});
       if (!exact || !approximate) continue;
       const auto inPicture = [&](const glm::dvec2& pixel) {
-        return pixel.x > -0.5 && pixel.y > -0.5 && pixel.x < camera.width() - 0.5 && pixel.y < camera.height() - 0.5;
+        return pixel.x > -0.5 && pixel.y > -0.5 && pixel.x < camera.width() - 0.5 &&
+               pixel.y < camera.height() - 0.5;
       };
       if (!inPicture(*exact) && !inPicture(*approximate)) continue;
       moved.mostPx = std::max(moved.mostPx, glm::length(*exact - *approximate));
@@ -67,7 +69,8 @@ TEST(Reciprocal, MultiplyAddMovesNoPointFartherThanAllowed) {
     std::size_t before = 0;
     for (const double allowed : {0.05, 0.5, 5.0}) {
       const Moved moved = movedByMultiplyAdd(
-          *store, camera, {.maximumSizePx = 1.0, .reciprocal = Reciprocal::MultiplyAdd, .reciprocalErrorPx = allowed});
+          *store, camera,
+          {.maximumSizePx = 1.0, .reciprocal = Reciprocal::MultiplyAdd, .reciprocalErrorPx = allowed});
       EXPECT_LE(moved.mostPx, allowed);
       // The bound is not idle: what it lets through comes near it.
       EXPECT_GT(moved.mostPx, 0.1 * allowed);
