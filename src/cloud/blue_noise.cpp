@@ -13,6 +13,7 @@
 
 #include <glm/glm.hpp>
 
+#include "cloud/blue_noise_pass.h"
 #include "cloud/morton.h"
 
 // The hot loops in the widest registers the processor has.
@@ -21,35 +22,25 @@
 #else
 #define ALIDADE_WIDEST
 #endif
-#define ALIDADE_INLINE inline __attribute__((always_inline))
 
 namespace alidade {
 
-namespace {
+using blue_noise::Block;
+using blue_noise::Brick;
+using blue_noise::kLanes;
+using blue_noise::kNone;
+using blue_noise::Neighbourhood;
 
-constexpr std::size_t kLanes = 16;
-using Lanes = float __attribute__((vector_size(kLanes * sizeof(float))));
+namespace {
 
 /// Spacings above are scaled down to this many bits, so that squares below the spacing's are exact in floats.
 /// Larger ones are rounded, and stay larger.
 constexpr int kSpacingBits = 12;
 /// Added to coordinates before they are cut into bricks: none is negative then, and no block straddles a tile's edge.
 constexpr std::int32_t kBias = 1 << 19;
-constexpr std::uint32_t kNone = 0xffffffff;
 /// Bricks with fewer points than this on average are taken in groups: registers are to be filled.
 constexpr std::size_t kFewInBrick = 5;
-constexpr float kAccepted = -1;  ///< in place of a squared distance
-
-/// The bricks about a brick or about a group of 2³, itself among them, by its place in its block: which bricks of
-/// which blocks.
-struct Neighbourhood {
-  struct Entry {
-    std::uint8_t block = 0;  ///< (dz+1) * 9 + (dy+1) * 3 + dx+1
-    std::uint64_t bricks = 0;
-  };
-  std::array<Entry, 8> entries;
-  std::uint8_t count = 0;
-};
+constexpr std::uint64_t kEveryBlock = ~std::uint64_t{0};
 
 /// Where a brick stands in its block.
 std::uint32_t placeInBlock(std::int32_t x, std::int32_t y, std::int32_t z) {
@@ -92,17 +83,37 @@ std::array<std::int16_t, 256> logTable() {
 
 const std::array<std::int16_t, 256> kLogTable = logTable();
 
-/// 64 (10 - log2(d)) for d² = squared << 2 shift units².
-ALIDADE_INLINE int levelStepOf(float squared, int shift) {
-  if (squared <= 0) return kDeepestLevelStep;
+/// 64 (10 - log2(d)) for d² = squared << 2 shift units²; more than any level for 0.
+inline int levelStepOf(float squared, int shift) {
   const auto bits = std::bit_cast<std::uint32_t>(squared);
   const int log32 = (static_cast<int>(bits >> 23) - 127) * 32 + kLogTable[bits >> 15 & 255];
   return kFinestPass * kLevelSteps - log32 - shift * kLevelSteps;
 }
 
+/// Levels of the rejected points of a pass.
+ALIDADE_WIDEST void rate(const float* squared, const std::uint32_t* index, std::size_t count, int shift, int shallowest, int deepest,
+                         std::int16_t* levels) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const int level = std::clamp(levelStepOf(squared[i], shift), shallowest, deepest);
+    levels[index[i]] = static_cast<std::int16_t>(squared[i] >= 0 ? level : 0);
+  }
+}
+
+using Choose = std::size_t (*)(const blue_noise::Pass&);
+
+Choose widestChoose() {
+#if defined(__x86_64__)
+  if (__builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl") &&
+      __builtin_cpu_supports("bmi2"))
+    return blue_noise::chooseAvx512;
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2")) return blue_noise::chooseAvx2;
+#endif
+  return blue_noise::chooseScalar;
+}
+
 }  // namespace
 
-struct BlueNoise::Pass {
+struct BlueNoise::Spacing {
   int q = 0;
   int brickBits = 0;  ///< a brick's edge is twice the spacing
   int shift = 0;      ///< units are halved this often before they are squared
@@ -121,192 +132,63 @@ void BlueNoise::Survivors::reserve(std::size_t points) {
   index.resize(size);
 }
 
-std::uint32_t* BlueNoise::slotOf(std::int32_t x, std::int32_t y, std::int32_t z) {
-  const auto part = [](std::int32_t v) { return static_cast<std::uint64_t>(v) & 0x1fffff; };
-  const std::uint64_t key = part(x) | part(y) << 21 | part(z) << 42;
-  // The product's upper bits depend on all of the key's.
-  std::uint64_t at = (key * 0x9e3779b97f4a7c15ull) >> m_tableShift;
-  for (;; ++at) {
-    std::uint32_t* slot = &m_table[at & m_tableMask];
-    if (*slot == 0) return slot;
-    const Block& block = m_blocks[*slot - 1];
-    if (block.x == x && block.y == y && block.z == z) return slot;
+BlueNoise::Slot* BlueNoise::slotOf(std::uint64_t code) {
+  // The product's upper bits depend on all of the code's.
+  for (std::uint64_t at = (code * 0x9e3779b97f4a7c15ull) >> m_tableShift;; ++at) {
+    Slot* slot = &m_table[at & m_tableMask];
+    if (slot->key == 0 || slot->key == code + 1) return slot;
   }
 }
 
-std::array<std::uint32_t, 27> BlueNoise::blocksAround(std::int32_t x, std::int32_t y, std::int32_t z) {
+std::array<std::uint32_t, 27> BlueNoise::blocksAround(std::int32_t x, std::int32_t y, std::int32_t z, std::uint64_t limit) {
   std::array<std::uint32_t, 27> around;
-  for (int n = 0; n < 27; ++n) around[static_cast<std::size_t>(n)] = *slotOf(x + n % 3 - 1, y + n / 3 % 3 - 1, z + n / 9 - 1) - 1;
+  std::array<std::array<std::uint64_t, 3>, 3> spread;
+  for (int d = -1; d <= 1; ++d) {
+    const auto at = static_cast<std::size_t>(d + 1);
+    spread[0][at] = spreadBits(static_cast<std::uint64_t>(x + d));
+    spread[1][at] = spreadBits(static_cast<std::uint64_t>(y + d)) << 1;
+    spread[2][at] = spreadBits(static_cast<std::uint64_t>(z + d)) << 2;
+  }
+  for (std::size_t n = 0; n < 27; ++n) {
+    const std::uint64_t code = spread[0][n % 3] | spread[1][n / 3 % 3] | spread[2][n / 9];
+    around[n] = kNone;
+    if (code >= limit) continue;
+    if (const Slot* slot = slotOf(code); slot->key != 0) around[n] = slot->block;
+  }
   return around;
 }
 
 /// Cuts the survivors into bricks, and the bricks into blocks.
-void BlueNoise::layBricks(const Pass& pass) {
+void BlueNoise::layBricks(const Spacing& spacing) {
   m_bricks.clear();
   m_blocks.clear();
   for (std::uint32_t i = 0; i < m_alive.count; ++i) {
-    if (i > 0 && m_alive.splitBits[i] <= pass.brickBits) continue;
+    if (i > 0 && m_alive.splitBits[i] <= spacing.brickBits) continue;
     if (i > 0) m_bricks.back().last = i;
-    const std::int32_t x = pass.brickOf(m_alive.x[i]), y = pass.brickOf(m_alive.y[i]), z = pass.brickOf(m_alive.z[i]);
-    if (i == 0 || m_alive.splitBits[i] > pass.brickBits + 2)
-      m_blocks.push_back({x >> 2, y >> 2, z >> 2, static_cast<std::uint32_t>(m_bricks.size()), 0, {}});
+    const std::int32_t x = spacing.brickOf(m_alive.x[i]), y = spacing.brickOf(m_alive.y[i]), z = spacing.brickOf(m_alive.z[i]);
+    if (i == 0 || m_alive.splitBits[i] > spacing.brickBits + 2) {
+      Block& block = m_blocks.emplace_back();
+      block.code = mortonOf(static_cast<std::uint64_t>(x >> 2), static_cast<std::uint64_t>(y >> 2), static_cast<std::uint64_t>(z >> 2));
+      block.firstBrick = static_cast<std::uint32_t>(m_bricks.size());
+    }
     m_blocks.back().filled |= std::uint64_t{1} << placeInBlock(x, y, z);
     m_bricks.push_back({i, 0});
   }
   m_bricks.back().last = static_cast<std::uint32_t>(m_alive.count);
   m_tableMask = std::bit_ceil(2 * m_blocks.size() + 16) - 1;
   m_tableShift = std::countl_zero(m_tableMask);
-  m_table.assign(m_tableMask + 1, 0);
-  for (std::size_t b = 0; b < m_blocks.size(); ++b)
-    *slotOf(m_blocks[b].x, m_blocks[b].y, m_blocks[b].z) = static_cast<std::uint32_t>(b + 1);
-  for (Block& block : m_blocks) block.around = blocksAround(block.x, block.y, block.z);
+  m_table.assign(m_tableMask + 1, {});
+  for (std::size_t b = 0; b < m_blocks.size(); ++b) *slotOf(m_blocks[b].code) = {m_blocks[b].code + 1, static_cast<std::uint32_t>(b)};
+  for (Block& block : m_blocks) {
+    const auto part = [&](int axis) { return static_cast<std::int32_t>(gatherBits(block.code >> axis)); };
+    block.before = blocksAround(part(0), part(1), part(2), block.code + 1);
+  }
 }
 
-/// The parts of a pass that are compiled for each instruction set.
-struct BlueNoise::Kernel {
-  const Survivors& alive;
-  Survivors& accepted;
-  float* squared;
-  std::vector<Brick>& bricks;
-  const std::vector<Block>& blocks;
-  const std::array<Neighbourhood, 64>& neighbourhoods;
-  int groupBricks;  ///< 1 or 8
-  float spacingSquared;
-  int shift;
-
-  /// Bricks that are worked on together, as one register's worth of points. All of one brick or of a group of 2³.
-  struct Group {
-    std::uint64_t bricks;  ///< of the block, filled or not
-    std::uint32_t place;   ///< of its first brick
-    std::uint32_t firstBrick, lastBrick;
-  };
-  ALIDADE_INLINE Group groupAt(std::uint64_t bitsLeft, std::uint32_t firstBrick) const {
-    const auto place = static_cast<std::uint32_t>(__builtin_ctzll(bitsLeft));
-    if (groupBricks == 1) return {bitsLeft & -bitsLeft, place, firstBrick, firstBrick + 1};
-    const std::uint64_t bricksOfGroup = std::uint64_t{255} << (place & ~7u);
-    return {bricksOfGroup, place & ~7u, firstBrick, firstBrick + static_cast<std::uint32_t>(__builtin_popcountll(bitsLeft & bricksOfGroup))};
-  }
-
-  /// Runs of the accepted samples.
-  struct Run {
-    std::uint32_t from, to;
-  };
-  struct Runs {
-    std::array<Run, 64> runs;  // left as it is: setting it costs more than using it
-    std::size_t count;
-    ALIDADE_INLINE void add(const Brick& brick) {
-      if (count > 0 && runs[count - 1].to == brick.acceptedFirst) runs[count - 1].to = brick.acceptedLast;
-      else if (brick.acceptedFirst < brick.acceptedLast) runs[count++] = {brick.acceptedFirst, brick.acceptedLast};
-    }
-  };
-  /// What was accepted in the bricks around a group that come before it, or after it.
-  template <bool kBefore>
-  ALIDADE_INLINE void findRuns(const std::uint32_t* around, const Group& group, Runs& found) const {
-    found.count = 0;
-    const Neighbourhood& neighbours = neighbourhoods[group.place];
-    for (std::uint8_t e = 0; e < neighbours.count; ++e) {
-      const std::uint32_t at = around[neighbours.entries[e].block];
-      if (at == kNone) continue;
-      const std::uint64_t filled = blocks[at].filled;
-      for (std::uint64_t bits = filled & neighbours.entries[e].bricks; bits != 0; bits &= bits - 1) {
-        const std::uint64_t below = filled & ((bits & -bits) - 1);
-        const std::uint32_t n = blocks[at].firstBrick + static_cast<std::uint32_t>(__builtin_popcountll(below));
-        if (kBefore ? n < group.firstBrick : n >= group.lastBrick) found.add(bricks[n]);
-      }
-    }
-  }
-  /// Lowers the squared distances of the points from i on to what accepted samples make them.
-  ALIDADE_INLINE void lower(std::size_t i, const Run* runs, std::size_t count, Lanes& least) const {
-    Lanes px, py, pz;
-    std::memcpy(&px, &alive.x[i], sizeof px), std::memcpy(&py, &alive.y[i], sizeof py), std::memcpy(&pz, &alive.z[i], sizeof pz);
-    const float *ax = accepted.x.data(), *ay = accepted.y.data(), *az = accepted.z.data();
-    for (std::size_t r = 0; r < count; ++r) {
-      for (std::uint32_t a = runs[r].from; a < runs[r].to; ++a) {
-        const Lanes dx = px - ax[a], dy = py - ay[a], dz = pz - az[a];
-        const Lanes here = dx * dx + dy * dy + dz * dz;
-        least = here < least ? here : least;
-      }
-    }
-  }
-
-  /// Goes over the points in their order and accepts. What a register holds beyond a brick's end is written
-  /// again by the bricks that follow.
-  ALIDADE_WIDEST std::size_t choose(const float* nearSquared, const char* given) {
-    std::uint32_t kept = 0;
-    std::uint8_t split = 0;
-    for (const Block& block : blocks) {
-      std::uint32_t b = block.firstBrick;
-      for (std::uint64_t bits = block.filled; bits != 0;) {
-        const Group group = groupAt(bits, b);
-        bits &= ~group.bricks, b = group.lastBrick;
-        Runs runs;
-        findRuns<true>(block.around.data(), group, runs);
-        const std::uint32_t first = bricks[group.firstBrick].first, last = bricks[group.lastBrick - 1].last;
-        for (std::uint32_t v = first; v < last; v += kLanes) {
-          Lanes least = Lanes{} + std::numeric_limits<float>::max();
-          lower(v, runs.runs.data(), runs.count, least);
-          std::memcpy(squared + v, &least, sizeof least);
-        }
-        for (std::uint32_t member = group.firstBrick; member < group.lastBrick; ++member) {
-          Brick& brick = bricks[member];
-          if (brick.nearAt != kNoObstacle)
-            for (std::uint32_t i = brick.first; i < brick.last; ++i)
-              squared[i] = std::min(squared[i], nearSquared[brick.nearAt + (i - brick.first)]);
-          brick.acceptedFirst = kept;
-          for (std::uint32_t i = brick.first; i < brick.last; ++i) {
-            split = std::max(split, alive.splitBits[i]);
-            if (squared[i] < spacingSquared && (given == nullptr || given[i] == 0)) continue;
-            accepted.index[kept] = alive.index[i];
-            accepted.x[kept] = alive.x[i], accepted.y[kept] = alive.y[i], accepted.z[kept] = alive.z[i];
-            accepted.splitBits[kept] = split;
-            split = 0;
-            const Run own{kept, kept + 1};
-            ++kept;
-            for (std::uint32_t v = first; v < last; v += kLanes) {
-              Lanes least;
-              std::memcpy(&least, squared + v, sizeof least);
-              lower(v, &own, 1, least);
-              std::memcpy(squared + v, &least, sizeof least);
-            }
-            squared[i] = kAccepted;
-          }
-          brick.acceptedLast = kept;
-        }
-      }
-    }
-    return kept;
-  }
-  /// Once all are chosen: how far a rejected point is from the nearest of them.
-  ALIDADE_WIDEST void rate(std::int16_t* levels, int shallowest, int deepest) const {
-    for (const Block& block : blocks) {
-      std::uint32_t b = block.firstBrick;
-      for (std::uint64_t bits = block.filled; bits != 0;) {
-        const Group group = groupAt(bits, b);
-        bits &= ~group.bricks, b = group.lastBrick;
-        const std::uint32_t first = bricks[group.firstBrick].first, last = bricks[group.lastBrick - 1].last;
-        if (bricks[group.lastBrick - 1].acceptedLast - bricks[group.firstBrick].acceptedFirst == last - first) continue;
-        Runs runs;
-        findRuns<false>(block.around.data(), group, runs);
-        for (std::uint32_t v = first; v < last; v += kLanes) {
-          Lanes least;
-          std::memcpy(&least, squared + v, sizeof least);
-          lower(v, runs.runs.data(), runs.count, least);
-          std::array<float, kLanes> each;
-          std::memcpy(each.data(), &least, sizeof least);
-          const std::size_t n = std::min<std::size_t>(kLanes, last - v);
-          for (std::size_t lane = 0; lane < n; ++lane)
-            if (each[lane] >= 0)
-              levels[alive.index[v + lane]] = static_cast<std::int16_t>(std::clamp(levelStepOf(each[lane], shift), shallowest, deepest));
-        }
-      }
-    }
-  }
-};
-
 /// Sets how far the points of bricks about obstacles are from them.
-void BlueNoise::obstruct(const Pass& pass, std::span<const Obstacle> obstacles) {
+void BlueNoise::obstruct(const Spacing& spacing, std::span<const Obstacle> obstacles) {
   m_nearSquared.clear();
-  const auto cut = [&](std::int32_t v) { return (v + kBias) >> pass.brickBits; };
+  const auto cut = [&](std::int32_t v) { return (v + kBias) >> spacing.brickBits; };
   const auto sameBrick = [&](const Obstacle& a, const Obstacle& b) {
     return cut(a.x) == cut(b.x) && cut(a.y) == cut(b.y) && cut(a.z) == cut(b.z);
   };
@@ -315,11 +197,11 @@ void BlueNoise::obstruct(const Pass& pass, std::span<const Obstacle> obstacles) 
     const Obstacle& first = obstacles[i];
     samples.clear();
     for (; i < obstacles.size() && sameBrick(obstacles[i], first); ++i)
-      if (obstacles[i].from <= pass.q)
-        samples.emplace_back(obstacles[i].x >> pass.shift, obstacles[i].y >> pass.shift, obstacles[i].z >> pass.shift);
+      if (obstacles[i].from <= spacing.q)
+        samples.emplace_back(obstacles[i].x >> spacing.shift, obstacles[i].y >> spacing.shift, obstacles[i].z >> spacing.shift);
     if (samples.empty()) continue;
     const std::int32_t x = cut(first.x), y = cut(first.y), z = cut(first.z);
-    const auto around = blocksAround(x >> 2, y >> 2, z >> 2);
+    const auto around = blocksAround(x >> 2, y >> 2, z >> 2, kEveryBlock);
     const Neighbourhood& neighbours = neighbourhoods(1)[placeInBlock(x, y, z)];
     for (std::uint8_t e = 0; e < neighbours.count; ++e) {
       const std::uint32_t at = around[neighbours.entries[e].block];
@@ -327,7 +209,7 @@ void BlueNoise::obstruct(const Pass& pass, std::span<const Obstacle> obstacles) 
       const Block& block = m_blocks[at];
       for (std::uint64_t bits = block.filled & neighbours.entries[e].bricks; bits != 0; bits &= bits - 1) {
         Brick& brick = m_bricks[block.firstBrick + static_cast<std::uint32_t>(std::popcount(block.filled & ((bits & -bits) - 1)))];
-        if (brick.nearAt == kNoObstacle) {
+        if (brick.nearAt == kNone) {
           brick.nearAt = static_cast<std::uint32_t>(m_nearSquared.size());
           m_nearSquared.resize(m_nearSquared.size() + (brick.last - brick.first), std::numeric_limits<float>::max());
         }
@@ -346,26 +228,36 @@ void BlueNoise::obstruct(const Pass& pass, std::span<const Obstacle> obstacles) 
 void BlueNoise::runPass(int q, bool isFirst, std::span<const Obstacle> obstacles, std::span<std::int16_t> levels,
                         std::span<const std::int8_t> settled) {
   const int spacingBits = kFinestPass - q;
-  Pass pass;
-  pass.q = q;
-  pass.brickBits = spacingBits + 1;
-  pass.shift = std::max(0, spacingBits - kSpacingBits);
-  if (pass.shift > 0) {  // one more than in the pass before
+  Spacing spacing;
+  spacing.q = q;
+  spacing.brickBits = spacingBits + 1;
+  spacing.shift = std::max(0, spacingBits - kSpacingBits);
+  if (spacing.shift > 0) {  // one more than in the pass before
     for (auto* column : {&m_alive.x, &m_alive.y, &m_alive.z})
       for (std::size_t i = 0; i < m_alive.count; ++i) (*column)[i] = std::floor((*column)[i] * 0.5f);
   }
-  layBricks(pass);
-  obstruct(pass, obstacles);
+  layBricks(spacing);
+  obstruct(spacing, obstacles);
   m_given.clear();
   for (std::size_t i = 0; i < m_alive.count && !settled.empty(); ++i) m_given.push_back(settled[m_alive.index[i]] <= q);
   m_accepted.reserve(m_alive.count);
   if (m_squared.size() < m_alive.count + kLanes) m_squared.resize(m_alive.count + kLanes);
-  const float spacingSquared = static_cast<float>(std::int32_t{1} << 2 * (spacingBits - pass.shift));
   const bool grouped = m_alive.count < kFewInBrick * m_bricks.size();
-  Kernel kernel{m_alive, m_accepted, m_squared.data(), m_bricks, m_blocks, neighbourhoods(grouped ? 2 : 1), grouped ? 8 : 1,
-                spacingSquared, pass.shift};
-  m_accepted.count = kernel.choose(m_nearSquared.data(), m_given.empty() ? nullptr : m_given.data());
-  kernel.rate(levels.data(), q * kLevelSteps, isFirst ? kDeepestLevelStep : (q + 1) * kLevelSteps - 1);
+  blue_noise::Pass pass;
+  pass.alive = {m_alive.index.data(), m_alive.x.data(), m_alive.y.data(), m_alive.z.data(), m_alive.splitBits.data()};
+  pass.accepted = {m_accepted.index.data(), m_accepted.x.data(), m_accepted.y.data(), m_accepted.z.data(), m_accepted.splitBits.data()};
+  pass.squared = m_squared.data();
+  pass.bricks = m_bricks.data();
+  pass.blocks = m_blocks.data(), pass.blockCount = m_blocks.size();
+  pass.neighbourhoods = neighbourhoods(grouped ? 2 : 1).data();
+  pass.groupBricks = grouped ? 8 : 1;
+  pass.spacingSquared = static_cast<float>(std::int32_t{1} << 2 * (spacingBits - spacing.shift));
+  pass.nearSquared = m_nearSquared.data();
+  pass.given = m_given.empty() ? nullptr : m_given.data();
+  static const Choose choose = widestChoose();
+  m_accepted.count = choose(pass);
+  rate(m_squared.data(), m_alive.index.data(), m_alive.count, spacing.shift, q * kLevelSteps,
+       isFirst ? kDeepestLevelStep : (q + 1) * kLevelSteps - 1, levels.data());
   std::swap(m_alive, m_accepted);
 }
 

@@ -8,6 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "cloud/blue_noise_pass.h"
+
 namespace alidade {
 
 /// Levels are counted in 64ths of an octave ("steps"), from where the spacing is 1024 lattice units:
@@ -51,35 +53,25 @@ class BlueNoise {
     std::size_t count = 0;
     void reserve(std::size_t points);
   };
-  /// A cube of twice the spacing: its points are a run of the survivors.
-  struct Brick {
-    std::uint32_t first = 0, last = 0;
-    std::uint32_t acceptedFirst = 0, acceptedLast = 0;  ///< of m_accepted
-    std::uint32_t nearAt = kNoObstacle;                 ///< into m_nearSquared
+  struct Spacing;
+  struct Slot {
+    std::uint64_t key = 0;  ///< 1 + the block's code; 0: empty
+    std::uint32_t block = 0;
   };
-  static constexpr std::uint32_t kNoObstacle = 0xffffffff;
-  /// A cube of 4³ bricks, those that hold points in Morton order from firstBrick on.
-  struct Block {
-    std::int32_t x = 0, y = 0, z = 0;
-    std::uint32_t firstBrick = 0;
-    std::uint64_t filled = 0;  ///< by the brick's Morton code in the block
-    std::array<std::uint32_t, 27> around{};  ///< blocks beside it, and itself
-  };
-  struct Pass;
-  struct Kernel;
 
   void runPass(int q, bool isFirst, std::span<const Obstacle> obstacles, std::span<std::int16_t> levels,
                std::span<const std::int8_t> settled);
-  void layBricks(const Pass& pass);
-  void obstruct(const Pass& pass, std::span<const Obstacle> obstacles);
-  std::uint32_t* slotOf(std::int32_t x, std::int32_t y, std::int32_t z);
-  std::array<std::uint32_t, 27> blocksAround(std::int32_t x, std::int32_t y, std::int32_t z);
+  void layBricks(const Spacing& spacing);
+  void obstruct(const Spacing& spacing, std::span<const Obstacle> obstacles);
+  Slot* slotOf(std::uint64_t code);
+  /// The blocks beside one, and itself, of those whose code is below the limit.
+  std::array<std::uint32_t, 27> blocksAround(std::int32_t x, std::int32_t y, std::int32_t z, std::uint64_t limit);
 
   Survivors m_alive, m_accepted;
   std::vector<float> m_squared;        ///< of each survivor's distance to the nearest accepted; -1: is one
-  std::vector<Brick> m_bricks;
-  std::vector<Block> m_blocks;
-  std::vector<std::uint32_t> m_table;  ///< open addressing: 1 + block
+  std::vector<blue_noise::Brick> m_bricks;
+  std::vector<blue_noise::Block> m_blocks;
+  std::vector<Slot> m_table;           ///< open addressing
   std::uint64_t m_tableMask = 0;
   int m_tableShift = 0;
   std::vector<Obstacle> m_near;        ///< Morton order

@@ -153,24 +153,24 @@ void sumUp(std::vector<BuildNode>& nodes) {
   }
 }
 
-CellPoints sortCell(const PlanCell& cell, std::span<const std::uint64_t> packed) {
-  CellPoints points;
+void sortCell(const PlanCell& cell, std::span<const std::uint64_t> packed, SortKeys& sort, CellPoints& points) {
   const std::size_t count = packed.size();
   const int axisBits = 16 - cell.depth;
   const int rowBits = std::bit_width(count);
   points.droppedBits = std::max(0, (3 * axisBits + rowBits - 64 + 2) / 3);
   const int drop = 3 * points.droppedBits, bits = 3 * axisBits - drop;
   const std::uint64_t inCell = axisBits == 16 ? 0xffffffffffffull : (std::uint64_t{1} << 3 * axisBits) - 1;
-  std::vector<std::uint64_t> keys(count), scratch;
+  auto& keys = sort.keys;
+  keys.resize(count);
   makeKeys(packed.data(), count, inCell, drop, rowBits, keys.data());
-  radixSort(keys, scratch, rowBits, bits);
+  radixSort(keys, sort.scratch, rowBits, bits);
   points.code.resize(count), points.row.resize(count);
   points.x.resize(count), points.y.resize(count), points.z.resize(count);
   points.level.assign(count, 0);
   if (drop == 0 && count > 0) {
     readKeys(keys.data(), count, codeOf(packed[0]) & ~inCell, rowBits, points.code.data(), points.row.data(), points.x.data(),
              points.y.data(), points.z.data());
-    return points;
+    return;
   }
   const std::uint64_t rowMask = (std::uint64_t{1} << rowBits) - 1;
   for (std::size_t i = 0; i < count; ++i) {
@@ -181,7 +181,6 @@ CellPoints sortCell(const PlanCell& cell, std::span<const std::uint64_t> packed)
     points.z[i] = static_cast<std::uint16_t>(place >> 32);
     points.code[i] = codeOf(place);
   }
-  return points;
 }
 
 std::vector<std::uint32_t> assignLevels(const PlanCell& cell, CellPoints& points, std::span<const Obstacle> obstacles,

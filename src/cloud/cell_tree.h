@@ -13,6 +13,7 @@
 #include "cloud/blue_noise.h"
 #include "cloud/chunk_plan.h"
 #include "cloud/levels.h"
+#include "cloud/raw_bytes.h"
 
 namespace alidade {
 
@@ -63,9 +64,9 @@ void sumUp(std::vector<BuildNode>& nodes);
 
 /// The points of one cell, Morton order, columns parallel.
 struct CellPoints {
-  std::vector<std::uint64_t> code;  ///< Morton in the tile; the lowest `droppedBits` bits an axis need not be sorted
-  std::vector<std::uint32_t> row;   ///< index of the point in the source order of its cell
-  std::vector<std::uint16_t> x, y, z;
+  RawVector<std::uint64_t> code;  ///< Morton in the tile; the lowest `droppedBits` bits an axis need not be sorted
+  RawVector<std::uint32_t> row;   ///< index of the point in the source order of its cell
+  RawVector<std::uint16_t> x, y, z;
   std::vector<std::int16_t> level;  ///< steps, in the tile
   int droppedBits = 0;
 
@@ -79,8 +80,13 @@ struct BorderSample {
   std::int16_t from;  ///< accepted at every pass q >= from
 };
 
-/// Sorts a cell's points. `packed` holds x | y << 16 | z << 32 of each point, in source order.
-CellPoints sortCell(const PlanCell& cell, std::span<const std::uint64_t> packed);
+/// What sorting needs beside the points; keeps its memory for the next cell.
+struct SortKeys {
+  RawVector<std::uint64_t> keys, scratch;
+};
+
+/// Sorts a cell's points into `points`. `packed` holds x | y << 16 | z << 32 of each point, in source order.
+void sortCell(const PlanCell& cell, std::span<const std::uint64_t> packed, SortKeys& sort, CellPoints& points);
 
 /// Gives every point of the cell its level. Returns those that the cell leaves to the tree above it (level
 /// below the cell's depth, undecided), ascending; none for a whole tile.

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <unordered_map>
@@ -60,29 +61,33 @@ class ChunkPlan {
   friend class CellFinder;
 };
 
-/// Looks cells up; remembers the last tile. One a thread.
+/// Looks cells up; remembers tiles that it met, as a scan's order comes back to them. One a thread.
 class CellFinder {
  public:
   explicit CellFinder(const ChunkPlan& plan) : m_plan(plan) {}
 
   /// The cell that holds a place of a tile, or ChunkPlan::kNone for a tile that the sample did not meet.
   std::uint32_t find(const glm::ivec3& tile, const glm::u16vec3& place) {
-    if (tile != m_tile || m_grid == nullptr) {
+    Met& met = m_met[static_cast<std::uint64_t>(TileHash()(tile)) >> 58];
+    if (tile != met.tile || met.grid == nullptr) {
       const auto found = m_plan.m_tiles.find(tile);
       if (found == m_plan.m_tiles.end()) return ChunkPlan::kNone;
-      m_tile = tile;
-      m_grid = &found->second;
+      met = {tile, &found->second};
     }
-    const int shift = 16 - m_grid->depth;
+    const ChunkPlan::TileGrid& grid = *met.grid;
+    const int shift = 16 - grid.depth;
     const std::uint32_t x = static_cast<std::uint32_t>(place.x) >> shift, y = static_cast<std::uint32_t>(place.y) >> shift,
                         z = static_cast<std::uint32_t>(place.z) >> shift;
-    return m_grid->grid[(z << m_grid->depth | y) << m_grid->depth | x];
+    return grid.grid[(z << grid.depth | y) << grid.depth | x];
   }
 
  private:
+  struct Met {
+    glm::ivec3 tile{0};
+    const ChunkPlan::TileGrid* grid = nullptr;
+  };
   const ChunkPlan& m_plan;
-  glm::ivec3 m_tile{0};
-  const ChunkPlan::TileGrid* m_grid = nullptr;
+  std::array<Met, 64> m_met;
 };
 
 }  // namespace alidade

@@ -8,13 +8,14 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "cloud/cell_tree.h"
 
-// Wider registers, but no instruction set with fused multiply-adds: the same spacing on every processor.
+// The widest registers the processor has. The build fuses nothing here: the same spacing on every processor.
 #if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
-#define ALIDADE_WIDE __attribute__((target_clones("avx", "default")))
+#define ALIDADE_WIDE __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
 #else
 #define ALIDADE_WIDE
 #endif
@@ -27,36 +28,68 @@ constexpr std::size_t kNeighbours = 8;
 constexpr std::size_t kPlaces = 7;
 constexpr std::size_t kRun = 64;
 
+/// Places in Morton order, and the boxes of each kRun of them.
 struct Places {
   std::vector<float> x, y, z;
+  struct Box {
+    std::array<float, 3> low, high;
+  };
+  std::vector<Box> boxes;
+
+  /// Rounded as the points' own distances are: never more than that of a point inside.
+  float squaredDistanceTo(const Box& box, std::size_t at) const {
+    float squared = 0;
+    for (const auto& [value, axis] : {std::pair{x[at], 0}, std::pair{y[at], 1}, std::pair{z[at], 2}}) {
+      const float apart = std::max({box.low[static_cast<std::size_t>(axis)] - value, value - box.high[static_cast<std::size_t>(axis)], 0.0f});
+      squared += apart * apart;
+    }
+    return squared;
+  }
 };
 
-/// Squared distance from place `at` to its k-th nearest among the others.
-ALIDADE_WIDE float neighbourDistanceSquared(const Places& p, std::size_t at, std::size_t k) {
-  std::array<float, kNeighbours> nearest;
-  nearest.fill(std::numeric_limits<float>::max());
-  std::array<float, kRun> squared;
-  const std::size_t count = p.x.size();
-  const float *x = p.x.data(), *y = p.y.data(), *z = p.z.data();
-  const float atX = x[at], atY = y[at], atZ = z[at];
-  for (std::size_t first = 0; first < count; first += kRun) {
-    const std::size_t n = std::min(kRun, count - first);
-    for (std::size_t i = 0; i < n; ++i) {
-      const float dx = x[first + i] - atX, dy = y[first + i] - atY, dz = z[first + i] - atZ;
-      squared[i] = dx * dx + dy * dy + dz * dz;
-    }
-    std::array<float, 8> least;
-    least.fill(std::numeric_limits<float>::max());
-    for (std::size_t i = 0; i + 8 <= n; i += 8)
-      for (std::size_t lane = 0; lane < 8; ++lane) least[lane] = squared[i + lane] < least[lane] ? squared[i + lane] : least[lane];
-    if (n == kRun && *std::min_element(least.begin(), least.end()) >= nearest[k - 1]) continue;
-    for (std::size_t i = 0; i < n; ++i) {
-      if (squared[i] >= nearest[k - 1] || first + i == at) continue;
-      std::size_t slot = k - 1;
-      for (; slot > 0 && nearest[slot - 1] > squared[i]; --slot) nearest[slot] = nearest[slot - 1];
-      nearest[slot] = squared[i];
+ALIDADE_WIDE void findBoxes(Places& p) {
+  const std::array<const float*, 3> columns{p.x.data(), p.y.data(), p.z.data()};
+  for (std::size_t first = 0; first < p.x.size(); first += kRun) {
+    const std::size_t last = std::min(first + kRun, p.x.size());
+    Places::Box& box = p.boxes.emplace_back();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      float low = columns[axis][first], high = low;
+      for (std::size_t i = first; i < last; ++i) {
+        low = columns[axis][i] < low ? columns[axis][i] : low;
+        high = columns[axis][i] > high ? columns[axis][i] : high;
+      }
+      box.low[axis] = low, box.high[axis] = high;
     }
   }
+}
+
+using Nearest = std::array<float, kNeighbours>;
+
+/// Takes the run's places other than `at` among the k nearest.
+ALIDADE_WIDE void look(const Places& p, std::size_t run, std::size_t at, std::size_t k, Nearest& nearest) {
+  std::array<float, kRun> squared;
+  const std::size_t first = run * kRun, n = std::min(kRun, p.x.size() - first);
+  const float *x = p.x.data() + first, *y = p.y.data() + first, *z = p.z.data() + first;
+  const float atX = p.x[at], atY = p.y[at], atZ = p.z[at];
+  for (std::size_t i = 0; i < n; ++i) {
+    const float dx = x[i] - atX, dy = y[i] - atY, dz = z[i] - atZ;
+    squared[i] = dx * dx + dy * dy + dz * dz;
+  }
+  for (std::size_t i = 0; i < n; ++i) {
+    if (squared[i] >= nearest[k - 1] || first + i == at) continue;
+    std::size_t slot = k - 1;
+    for (; slot > 0 && nearest[slot - 1] > squared[i]; --slot) nearest[slot] = nearest[slot - 1];
+    nearest[slot] = squared[i];
+  }
+}
+
+/// Squared distance from place `at` to its k-th nearest among the others.
+float neighbourDistanceSquared(const Places& p, std::size_t at, std::size_t k) {
+  Nearest nearest;
+  nearest.fill(std::numeric_limits<float>::max());
+  look(p, at / kRun, at, k, nearest);
+  for (std::size_t run = 0; run < p.boxes.size(); ++run)
+    if (run != at / kRun && p.squaredDistanceTo(p.boxes[run], at) < nearest[k - 1]) look(p, run, at, k, nearest);
   return nearest[k - 1];
 }
 
@@ -67,6 +100,7 @@ float spacingOf(std::span<const std::uint32_t> run, const CellPoints& points, st
   Places places;
   places.x.reserve(run.size()), places.y.reserve(run.size()), places.z.reserve(run.size());
   for (const std::uint32_t i : run) places.x.push_back(points.x[i]), places.y.push_back(points.y[i]), places.z.push_back(points.z[i]);
+  findBoxes(places);
   const std::size_t k = std::min(kNeighbours, run.size() - 1), count = std::min(kPlaces, run.size());
   std::vector<double> sides;
   for (std::size_t i = 0; i < count; ++i) {

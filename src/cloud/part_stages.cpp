@@ -77,6 +77,9 @@ UnitBox boxOf(const PlanCell& cell) {
 /// Before a record of what a cell left to the tree above: its level, where that was drawn.
 constexpr std::size_t kTopHeader = 8;
 
+/// Of a DisplayPoint: what a record begins with.
+constexpr std::size_t kPointBytes = 8;
+
 }  // namespace
 
 PartStages::PartStages(const Lattice& lattice, const PointSchema& schema, const TreeOptions& tree, DistributionResult spread,
@@ -216,6 +219,15 @@ std::uint64_t PartStages::costOf(std::uint32_t stream) const {
   return m_streamPoints[stream] * (2 * m_layout.bytes + 8 + 110);
 }
 
+void PartStages::releaseBorders(std::uint32_t stream) {
+  const auto free = [&](std::uint32_t s) {
+    for (const std::uint32_t c : m_cellsOf[s]) m_done[c].borders = {};
+  };
+  for (const std::uint32_t before : m_streamOrder.before[stream])
+    if (--m_waiting[before] == 0) free(before);
+  if (m_waiting[stream] == 0) free(stream);
+}
+
 /// Appends the tree's points, in its order, to the output; `rowOf` gives each point's record.
 void PartStages::emit(Output& output, const SubTree& tree, const std::vector<const std::byte*>& records,
                       std::span<const std::uint32_t> rowOf, CellDone& done) {
@@ -228,9 +240,9 @@ void PartStages::emit(Output& output, const SubTree& tree, const std::vector<con
   const auto* from = reinterpret_cast<const std::byte*>(tree.tables.data());
   tables.insert(tables.end(), from, from + tree.tables.size() * sizeof(std::uint32_t));
 
-  constexpr std::size_t kBlock = 1024;
+  constexpr std::size_t kBlock = 256;
   std::array<const std::byte*, kBlock> block;
-  std::vector<std::size_t> widths{8, m_lattice.exactBytes()};
+  std::vector<std::size_t> widths{kPointBytes, m_lattice.exactBytes()};
   for (const ColumnShape& column : m_schema.columns) widths.push_back(column.bytes());
   const std::uint64_t first = output.points;
   output.points += tree.order.size();
@@ -251,9 +263,16 @@ void PartStages::emit(Output& output, const SubTree& tree, const std::vector<con
   }
 }
 
-Result<PartStages::Output> PartStages::buildStream(std::uint32_t stream) {
-  Output output;
-  output.columns.resize(PartSink::kFirstAttribute + m_schema.columns.size());
+void PartStages::Output::clear() {
+  for (auto& column : columns) column.clear();
+  points = 0;
+  cells.clear();
+}
+
+Result<void> PartStages::buildStream(std::uint32_t stream, Workshop& shop) {
+  auto& [noise, sort, points, records, packed, output] = shop;
+  output.clear();
+  output.columns.resize(columnCount());
   auto loaded = m_streams->load(m_usedStreams[stream]);
   if (!loaded) return fail(loaded.error());
   const auto damaged = [this] { return fail(kDamagedSpill, m_streams->options().spillPath, "Index the scan again"); };
@@ -267,9 +286,10 @@ Result<PartStages::Output> PartStages::buildStream(std::uint32_t stream) {
   }
   std::stable_sort(runs.begin(), runs.end(),
                    [](const Run& a, const Run& b) { return a.cell != b.cell ? a.cell < b.cell : a.batch < b.batch; });
-  BlueNoise noise;
-  std::vector<const std::byte*> records;
-  std::vector<std::uint64_t> packed;
+  output.columns[PartSink::kPoints].reserve(m_streamPoints[stream] * kPointBytes);
+  output.columns[PartSink::kExact].reserve(m_streamPoints[stream] * m_lattice.exactBytes());
+  for (std::size_t c = 0; c < m_schema.columns.size(); ++c)
+    output.columns[PartSink::kFirstAttribute + c].reserve(m_streamPoints[stream] * m_schema.columns[c].bytes());
   auto& tops = output.columns[PartSink::kTops];
   std::size_t next = 0;
   for (const std::uint32_t c : m_cellsOf[stream]) {
@@ -284,7 +304,7 @@ Result<PartStages::Output> PartStages::buildStream(std::uint32_t stream) {
     }
     if (records.size() != m_spread.cells[c].count)
       return damaged();
-    CellPoints points = sortCell(cell, packed);
+    sortCell(cell, packed, sort, points);
     const int coarsest = cell.depth > 0 ? cell.depth : kCoarsestPass;
     std::vector<Obstacle> obstacles;
     if (m_tree.kind == LevelKind::BlueNoise) {
@@ -308,14 +328,15 @@ Result<PartStages::Output> PartStages::buildStream(std::uint32_t stream) {
     }
     output.cells.emplace_back(c, std::move(done));
   }
-  return output;
+  return {};
 }
 
-Result<PartStages::Output> PartStages::buildTile(std::uint32_t t) {
-  Output output;
-  output.columns.resize(PartSink::kFirstAttribute + m_schema.columns.size());
+Result<void> PartStages::buildTile(std::uint32_t t, Workshop& shop) {
+  Output& output = shop.output;
+  output.clear();
+  output.columns.resize(columnCount());
   Tile& tile = m_tiles[t];
-  if (!tile.isCut) return output;
+  if (!tile.isCut) return {};
   std::vector<PlanCell> cells;
   std::vector<std::byte> bytes;
   TopPoints top;
@@ -347,13 +368,12 @@ Result<PartStages::Output> PartStages::buildTile(std::uint32_t t) {
     for (const std::uint32_t n : m_tileOrder.before[t])
       if (m_tiles[n].isCut) addObstacles({m_tiles[n].tile, 0, {}}, m_tiles[n].borders, whole, kCoarsestPass, obstacles);
   }
-  BlueNoise noise;
-  assignTopLevels(tile.tile, top, obstacles, m_tree, noise);
+  assignTopLevels(tile.tile, top, obstacles, m_tree, shop.noise);
   if (m_tree.kind == LevelKind::BlueNoise) tile.borders = borderSamples(whole, top.points, {});
   CellDone done;
   emit(output, buildTopTree(tile.tile, cells, top), records, top.points.row, done);
   output.cells.emplace_back(t, std::move(done));
-  return output;
+  return {};
 }
 
 /// Writes an output where it belongs; its nodes then count over the whole part.
@@ -363,7 +383,7 @@ Result<void> PartStages::commit(Output& output, const Offsets& at) {
     for (BuildNode& node : done.nodes) node.first += at.points, node.tableOffset += at.tables;
   }
   for (std::size_t column = 0; column < output.columns.size(); ++column) {
-    const std::vector<std::byte>& bytes = output.columns[column];
+    const RawVector<std::byte>& bytes = output.columns[column];
     if (bytes.empty()) continue;
     std::uint64_t offset = at.points * (output.points > 0 ? bytes.size() / output.points : 0);
     if (column == PartSink::kTables) offset = at.tables * sizeof(std::uint32_t);
@@ -374,7 +394,7 @@ Result<void> PartStages::commit(Output& output, const Offsets& at) {
 }
 
 Result<PartTree> PartStages::run(const Progress& progress) {
-  std::mutex noteMutex;
+  std::mutex noteMutex, bordersMutex;
   const auto place = [this](const Output& output, Offsets& at) {
     at = m_next;
     m_next.points += output.points;
@@ -388,33 +408,41 @@ Result<PartTree> PartStages::run(const Progress& progress) {
   // Whatever came after the first gap is done again.
   for (std::size_t i = m_finished; i < m_streamOrder.order.size(); ++i) m_streamDone[m_streamOrder.order[i]] = 0;
   work.order = std::span(m_streamOrder.order).subspan(m_finished);
+  m_waiting.assign(m_usedStreams.size(), 0);
+  for (const auto& before : m_streamOrder.before)
+    for (const std::uint32_t s : before) ++m_waiting[s];
+  for (std::uint64_t i = 0; i < m_finished; ++i) releaseBorders(m_streamOrder.order[i]);
   work.before = [this](std::uint32_t s) { return std::span<const std::uint32_t>(m_streamOrder.before[s]); };
   work.cost = [this](std::uint32_t s) { return costOf(s); };
   work.finished = &m_streamDone;
   work.start = [&] {
     struct State {
-      Output output;
+      Workshop shop;
       Offsets at;
     };
     auto state = std::make_shared<State>();
     OrderedWork::Worker worker;
     worker.build = [this, state](std::uint32_t s) -> Result<void> {
-      auto built = buildStream(s);
-      if (!built) return fail(built.error());
-      state->output = std::move(*built);
+      if (auto built = buildStream(s, state->shop); !built) return built;
       m_streams->release(m_usedStreams[s]);
       return {};
     };
-    worker.place = [state, &place](std::uint32_t) { place(state->output, state->at); };
-    worker.finish = [this, state, &noteMutex](std::uint32_t s) -> Result<void> {
-      if (auto ok = commit(state->output, state->at); !ok) return ok;
+    worker.place = [state, &place](std::uint32_t) { place(state->shop.output, state->at); };
+    worker.finish = [this, state, &noteMutex, &bordersMutex, most = work.most](std::uint32_t s) -> Result<void> {
+      Output& output = state->shop.output;
+      if (auto ok = commit(output, state->at); !ok) return ok;
       if (m_keepsDiary) {
-        const std::vector<std::byte> note = noteOf(s, state->output, state->at);
+        const std::vector<std::byte> note = noteOf(s, output, state->at);
         std::lock_guard lock(noteMutex);
         if (auto ok = m_sink.note(note); !ok) return ok;
       }
-      for (auto& [cell, done] : state->output.cells) m_done[cell] = std::move(done);
-      state->output = {};
+      for (auto& [cell, done] : output.cells) m_done[cell] = std::move(done);
+      {
+        std::lock_guard lock(bordersMutex);
+        releaseBorders(s);
+      }
+      // What is kept counts as no other stream's: no thread keeps more than its share.
+      if (costOf(s) > most / static_cast<std::uint64_t>(m_options.threads)) state->shop = {};
       return {};
     };
     return worker;
@@ -431,19 +459,14 @@ Result<PartTree> PartStages::run(const Progress& progress) {
   };
   work.finished = &tileDone;
   work.start = [&] {
-    auto output = std::make_shared<std::pair<Output, Offsets>>();
+    auto state = std::make_shared<std::pair<Workshop, Offsets>>();
     OrderedWork::Worker worker;
-    worker.build = [this, output](std::uint32_t t) -> Result<void> {
-      auto built = buildTile(t);
-      if (!built) return fail(built.error());
-      output->first = std::move(*built);
-      return {};
-    };
-    worker.place = [output, &place](std::uint32_t) { place(output->first, output->second); };
-    worker.finish = [this, output](std::uint32_t t) -> Result<void> {
-      if (auto ok = commit(output->first, output->second); !ok) return ok;
-      if (m_tiles[t].isCut) m_tiles[t].nodes = std::move(output->first.cells[0].second.nodes);
-      output->first = {};
+    worker.build = [this, state](std::uint32_t t) { return buildTile(t, state->first); };
+    worker.place = [state, &place](std::uint32_t) { place(state->first.output, state->second); };
+    worker.finish = [this, state](std::uint32_t t) -> Result<void> {
+      if (auto ok = commit(state->first.output, state->second); !ok) return ok;
+      if (m_tiles[t].isCut) m_tiles[t].nodes = std::move(state->first.output.cells[0].second.nodes);
+      state->first = {};
       return {};
     };
     return worker;

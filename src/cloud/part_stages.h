@@ -37,9 +37,20 @@ class PartStages {
   };
   /// What a stream adds to the sink's columns.
   struct Output {
-    std::vector<std::vector<std::byte>> columns;  ///< by PartSink::Column
+    std::vector<RawVector<std::byte>> columns;  ///< by PartSink::Column
     std::uint64_t points = 0;
     std::vector<std::pair<std::uint32_t, CellDone>> cells;
+    /// Nothing in it, but its memory kept: first touch of fresh memory costs more than what is written to it.
+    void clear();
+  };
+  /// What a thread needs to build; kept from stream to stream, for the same reason.
+  struct Workshop {
+    BlueNoise noise;
+    SortKeys sort;
+    CellPoints points;
+    std::vector<const std::byte*> records;
+    RawVector<std::uint64_t> packed;
+    Output output;
   };
   struct Offsets {
     std::uint64_t points = 0, tables = 0, tops = 0;
@@ -52,12 +63,15 @@ class PartStages {
     bool isCut = false;
   };
 
-  Result<Output> buildStream(std::uint32_t stream);
-  Result<Output> buildTile(std::uint32_t tile);
+  Result<void> buildStream(std::uint32_t stream, Workshop& shop);
+  Result<void> buildTile(std::uint32_t tile, Workshop& shop);
+  std::size_t columnCount() const { return PartSink::kFirstAttribute + m_schema.columns.size(); }
   void emit(Output& output, const SubTree& tree, const std::vector<const std::byte*>& records,
             std::span<const std::uint32_t> rowOf, CellDone& done);
   Result<void> commit(Output& output, const Offsets& at);
   std::uint64_t costOf(std::uint32_t stream) const;
+  /// Frees the border samples that no stream waits for any more, now that this one is done.
+  void releaseBorders(std::uint32_t stream);
   std::vector<std::byte> noteOf(std::uint32_t stream, const Output& output, const Offsets& at) const;
   bool readNote(const std::vector<std::byte>& note);
 
@@ -77,6 +91,7 @@ class PartStages {
   std::unordered_map<std::uint32_t, std::uint32_t> m_cellOfId;
   WorkOrder m_streamOrder, m_tileOrder;
   std::vector<CellDone> m_done;  ///< by cell
+  std::vector<std::uint32_t> m_waiting;  ///< by stream: how many will still look at its border samples
   std::vector<Tile> m_tiles;
   std::vector<char> m_streamDone;
   std::uint64_t m_finished = 0;  ///< streams that the diary vouches for, in work order

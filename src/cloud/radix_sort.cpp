@@ -9,7 +9,7 @@
 
 namespace alidade {
 
-void radixSort(std::vector<std::uint64_t>& keys, std::vector<std::uint64_t>& scratch, int from, int bits) {
+void radixSort(RawVector<std::uint64_t>& keys, RawVector<std::uint64_t>& scratch, int from, int bits) {
   constexpr int kWidest = 11, kMostDigits = 6;
   const std::size_t count = keys.size();
   if (bits <= 0 || count < 2) return;

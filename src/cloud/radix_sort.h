@@ -4,12 +4,12 @@
 #pragma once
 
 #include <cstdint>
-#include <vector>
+#include "cloud/raw_bytes.h"
 
 namespace alidade {
 
 /// Sorts keys by their bits [from, from + bits), least significant digit first: stable, so that what stands below
 /// and is in order stays so. `scratch` is overwritten; it keeps its memory for the next call.
-void radixSort(std::vector<std::uint64_t>& keys, std::vector<std::uint64_t>& scratch, int from, int bits);
+void radixSort(RawVector<std::uint64_t>& keys, RawVector<std::uint64_t>& scratch, int from, int bits);
 
 }  // namespace alidade

@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <utility>
 
+#include "base/parallel.h"
 #include "cloud/radix_sort.h"
 #include "cloud/view_pyramid.h"
 
@@ -60,6 +62,15 @@ class Cuts {
     return alidade::stepOf(m_store.levelLaw().levelOfShare(share) - m_store.lawShift());
   }
 
+  /// The inverse: metres up to which a level of the node is drawn.
+  double reachOf(const CloudNode& node, double level) const {
+    const double spacing = m_store.levelKind() == LevelKind::BlueNoise
+                               ? m_store.spacingOfLevel(level)
+                               : node.spacing / std::sqrt(m_store.levelLaw().shareBelow(level + m_store.lawShift()));
+    if (m_options.law == DensityLaw::PointsPerPixel) return spacing * m_focal / m_options.targetSpacingPx;
+    return std::expm1(spacing * spacing * m_options.pointsPerSquareMetre);
+  }
+
  private:
   /// Wanted metres between neighbours.
   double spacingAt(double distance) const {
@@ -103,9 +114,9 @@ void addVisible(const PointStore& store, std::uint32_t storeIndex, const ViewPyr
 
 /// Distances are not negative: their bits order as they do. Those of equal distance stay in the order of their tree.
 void sortFrontToBack(std::vector<Candidate>& candidates) {
-  std::vector<std::uint64_t> keys(candidates.size());
+  RawVector<std::uint64_t> keys(candidates.size());
   for (std::size_t i = 0; i < keys.size(); ++i) keys[i] = std::uint64_t{std::bit_cast<std::uint32_t>(candidates[i].squaredDistance)} << 32 | i;
-  std::vector<std::uint64_t> scratch;
+  RawVector<std::uint64_t> scratch;
   radixSort(keys, scratch, 32, 31);
   std::vector<Candidate> sorted;
   sorted.reserve(candidates.size());
@@ -178,23 +189,68 @@ std::vector<Selection> cut(Stores stores, const std::vector<Candidate>& candidat
   return selections;
 }
 
-std::vector<Selection> selectFrom(Stores stores, const Camera& camera, const RigidTransform& cameraFromWorld,
-                                  const SelectionOptions& options) {
+double farthestOf(const Bounds& bounds, const glm::dvec3& eye) {
+  return glm::length(glm::max(glm::abs(bounds.min - eye), glm::abs(bounds.max - eye)));
+}
+
+/// Those of the range's points that their own distances want; false where that is all of them.
+bool copyWanted(const PointStore& store, const Cuts& cuts, const glm::dvec3& eye, double deltaSteps, const SelectedRange& range,
+                std::vector<DisplayPoint>& copy) {
+  const CloudNode& node = store.nodes()[range.node];
+  const NodeLevels levels = store.levelsOf(range.node);
+  const auto reachOfStep = [&](std::size_t i) {
+    // A step's points lie about its middle.
+    return cuts.reachOf(node, (levels.firstStep + static_cast<double>(i) + 0.5 + deltaSteps) / kLevelSteps);
+  };
+  const auto last = static_cast<std::size_t>(std::ranges::lower_bound(levels.cumulative, range.count) - levels.cumulative.begin());
+  if (!(reachOfStep(last) < farthestOf(node.bounds, eye))) return false;
+  const glm::vec3 nodeFromEye(node.origin - eye);
+  const auto unit = static_cast<float>(node.step);
+  const DisplayPoint* points = store.points().data() + range.first;
+  std::uint32_t p = 0;
+  for (std::size_t i = 0; i <= last; ++i) {
+    const double reach = reachOfStep(i);
+    const float squared = static_cast<float>(reach * reach);
+    for (const std::uint32_t end = std::min(range.count, levels.cumulative[i]); p < end; ++p) {
+      const glm::vec3 at = nodeFromEye + unit * glm::vec3(points[p].x, points[p].y, points[p].z);
+      if (!(glm::dot(at, at) > squared)) copy.push_back(points[p]);
+    }
+  }
+  return true;
+}
+
+void cutByPoint(const PointStore& store, const Cuts& cuts, const glm::dvec3& eye, double deltaSteps, Selection& selection) {
+  auto copies = std::make_shared<std::vector<std::vector<DisplayPoint>>>(selection.ranges.size());
+  parallelFor(selection.ranges.size(), 1, [&](std::size_t first, std::size_t last, int) {
+    for (std::size_t i = first; i < last; ++i) {
+      SelectedRange& range = selection.ranges[i];
+      std::vector<DisplayPoint>& copy = (*copies)[i];
+      if (!copyWanted(store, cuts, eye, deltaSteps, range, copy)) continue;
+      range.count = static_cast<std::uint32_t>(copy.size());
+      range.styled = copy.data();
+    }
+  });
+  std::erase_if(selection.ranges, [](const SelectedRange& range) { return range.count == 0; });
+  selection.pointCount = 0;
+  for (const SelectedRange& range : selection.ranges) selection.pointCount += range.count;
+  selection.owner = std::move(copies);
+}
+
+/// Prefixes of nodes, and the delta that they were cut with.
+std::vector<Selection> selectPrefixes(Stores stores, const Camera& camera, const RigidTransform& cameraFromWorld,
+                                  const SelectionOptions& options, const std::vector<Cuts>& cuts, double& delta) {
   const double density = std::clamp(options.density, 0.0, 1.0);
   if (!(density > 0.0) || camera.width() <= 0 || !cameraFromWorld.isFinite()) return std::vector<Selection>(stores.size());
   const ViewPyramid view(camera, cameraFromWorld);
   std::vector<Candidate> candidates;
-  for (std::uint32_t s = 0; s < stores.size(); ++s) {
-    const Cuts cuts(*stores[s], camera, options);
-    addVisible(*stores[s], s, view, &cuts, candidates);
-  }
+  for (std::uint32_t s = 0; s < stores.size(); ++s) addVisible(*stores[s], s, view, &cuts[s], candidates);
   sortFrontToBack(candidates);
   if (options.threshold == LevelThreshold::Uniform) {
     std::int32_t most = -kEveryStep;
     for (const Candidate& c : candidates) most = std::max(most, c.step);
     for (Candidate& c : candidates) c.step = most;
   }
-  double delta = 0;
+  delta = 0;
   if (density < 1.0 || options.pointBudget > 0) {
     const CountByDelta counts(stores, candidates);
     double count = density * static_cast<double>(counts.total());
@@ -211,6 +267,17 @@ std::vector<Selection> selectFrom(Stores stores, const Camera& camera, const Rig
     }
   }
   return cut(stores, candidates, delta);
+}
+
+std::vector<Selection> selectFrom(Stores stores, const Camera& camera, const RigidTransform& cameraFromWorld,
+                                  const SelectionOptions& options) {
+  std::vector<Cuts> cuts;
+  for (const PointStore* store : stores) cuts.emplace_back(*store, camera, options);
+  double delta = 0;
+  std::vector<Selection> selections = selectPrefixes(stores, camera, cameraFromWorld, options, cuts, delta);
+  for (std::size_t s = 0; options.threshold == LevelThreshold::ByPoint && s < stores.size(); ++s)
+    cutByPoint(*stores[s], cuts[s], cameraFromWorld.centre(), delta, selections[s]);
+  return selections;
 }
 
 }  // namespace

@@ -29,11 +29,15 @@ struct SelectedRange {
 struct Selection {
   std::vector<SelectedRange> ranges;  ///< front to back by node
   std::uint64_t pointCount = 0;
+  std::shared_ptr<const void> owner;  ///< of what ranges draw instead of the store's points: LevelThreshold::ByPoint
 };
 
 /// Where a node's level is cut.
 enum class LevelThreshold {
   ByDistance,  ///< each node by its own distance from the eye
+  /// Each point by its own distance (Zhang 2020), so that no node's border shows: ranges draw copies of the points
+  /// that are left, in their own colour. Costs a pass over the points in view; fewer are drawn than ByDistance draws.
+  ByPoint,
   Uniform,     ///< all nodes at the level that the nearest one wants (Zhang 2020, uniform threshold)
 };
 

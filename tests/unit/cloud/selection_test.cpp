@@ -3,6 +3,7 @@
 
 #include "cloud/selection.h"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -179,6 +180,60 @@ TEST(Selection, CullsWhatLiesOutsideTheFieldOfView) {
   EXPECT_LT(selected, 4 * seen);
   const auto away = RigidTransform::cameraLookingAt({-10, -6, 1.5}, {-20, -16, 1});
   EXPECT_EQ(selectAll(*store, camera, away).pointCount, 0u);
+}
+
+/// A floor under a camera that looks along it: by the farther and the nearer side of each node's border across the
+/// view, the largest difference of the points drawn in half a metre, as a share of both.
+double largestJump(const PointStore& store, const SelectionOptions& options) {
+  const auto pose = RigidTransform::cameraLookingAt({0, 0, 2}, {20, 0, 0});
+  const Selection selection = select(store, pinhole(1200, 800, 120), pose, options);
+  std::vector<double> drawn;
+  for (const SelectedRange& range : selection.ranges) {
+    const CloudNode& node = store.nodes()[range.node];
+    const DisplayPoint* points = range.styled != nullptr ? range.styled : store.points().data() + range.first;
+    for (std::uint32_t i = 0; i < range.count; ++i) drawn.push_back(node.origin.x + node.step * points[i].x);
+  }
+  std::sort(drawn.begin(), drawn.end());
+  const auto between = [&](double from, double to) {
+    return static_cast<double>(std::lower_bound(drawn.begin(), drawn.end(), to) - std::lower_bound(drawn.begin(), drawn.end(), from));
+  };
+  double most = 0;
+  for (const CloudNode& node : store.nodes()) {
+    if (node.childCount > 0 || node.bounds.min.x < 4 || node.bounds.min.x > 30) continue;
+    const double at = node.bounds.min.x, nearer = between(at - 0.5, at), farther = between(at, at + 0.5);
+    if (nearer + farther > 800) most = std::max(most, std::abs(nearer - farther) / (nearer + farther));
+  }
+  return most;
+}
+
+TEST(Selection, ByPointTheDensitiesOfNeighbouringNodesMeetAtTheirBorder) {
+  PointBatch batch;
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> along(2, 34), across(-8, 8);
+  for (int i = 0; i < 800'000; ++i) batch.position.push_back({along(random), across(random), 0.0});
+  const auto store = storeFrom(batch, 2000);
+  SelectionOptions options;
+  options.threshold = LevelThreshold::ByPoint;
+  // The law itself changes by a tenth in half a metre.
+  const double byPoint = largestJump(*store, options);
+  EXPECT_LT(byPoint, 0.15);
+  options.threshold = LevelThreshold::ByDistance;
+  EXPECT_GT(largestJump(*store, options), byPoint + 0.1);
+}
+
+TEST(Selection, ByPointDrawsWhatTheNodesPrefixesHoldAndNoMore) {
+  const auto store = storeFrom(unevenRoom(300'000), 5000);
+  const Camera camera = pinhole(960, 540, 700);
+  SelectionOptions options, byPoint;
+  byPoint.threshold = LevelThreshold::ByPoint;
+  std::uint64_t before = 0;
+  for (const double density : {0.1, 0.3, 0.6, 1.0}) {
+    options.density = byPoint.density = density;
+    const Selection prefixes = select(*store, camera, kView, options), cut = select(*store, camera, kView, byPoint);
+    EXPECT_LT(cut.pointCount, prefixes.pointCount);
+    EXPECT_GT(cut.pointCount, std::max(before, prefixes.pointCount / 4));
+    before = cut.pointCount;
+  }
 }
 
 TEST(Selection, AnEmptyStoreSelectsNothing) {

@@ -1,0 +1,197 @@
+// SPDX-FileCopyrightText: 2026 the Alidade authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+// Compiled once for each instruction set. Everything here belongs to its own translation unit.
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <limits>
+
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
+
+#include "cloud/blue_noise_pass.h"
+
+namespace alidade::blue_noise {
+namespace {
+
+using Lanes = float __attribute__((vector_size(kLanes * sizeof(float))));
+
+inline Lanes lanesAt(const float* from) {
+  Lanes lanes;
+  std::memcpy(&lanes, from, sizeof lanes);
+  return lanes;
+}
+
+inline void put(const Lanes& lanes, float* to) {
+  std::memcpy(to, &lanes, sizeof lanes);
+}
+
+/// One bit a lane that is at least the limit.
+inline std::uint32_t atLeast(const Lanes& lanes, float limit) {
+#if defined(__AVX512F__)
+  return _mm512_cmp_ps_mask(reinterpret_cast<const __m512&>(lanes), _mm512_set1_ps(limit), _CMP_GE_OQ);
+#elif defined(__AVX__)
+  __m256 halves[2];
+  std::memcpy(halves, &lanes, sizeof halves);
+  const __m256 all = _mm256_set1_ps(limit);
+  const int low = _mm256_movemask_ps(_mm256_cmp_ps(halves[0], all, _CMP_GE_OQ));
+  return static_cast<std::uint32_t>(low | _mm256_movemask_ps(_mm256_cmp_ps(halves[1], all, _CMP_GE_OQ)) << 8);
+#else
+  std::uint32_t bits = 0;
+  for (std::size_t lane = 0; lane < kLanes; ++lane) bits |= static_cast<std::uint32_t>(lanes[lane] >= limit) << lane;
+  return bits;
+#endif
+}
+
+/// Runs of points, or of accepted samples.
+struct Runs {
+  struct Run {
+    std::uint32_t from, to;
+  };
+  std::array<Run, 64> runs;  // left as it is: setting it costs more than using it
+  std::size_t count = 0;
+  void add(std::uint32_t from, std::uint32_t to) {
+    if (count > 0 && runs[count - 1].to == from) runs[count - 1].to = to;
+    else if (from < to) runs[count++] = {from, to};
+  }
+};
+
+/// Bricks that are worked on together: one, or those of a group of 2³, as a register's worth of points.
+struct Group {
+  std::uint64_t bricks;  ///< of the block, filled or not
+  std::uint32_t place;   ///< of its first brick
+  std::uint32_t firstBrick, lastBrick;
+};
+
+class Choice {
+ public:
+  explicit Choice(const Pass& pass) : m(pass) {}
+
+  std::uint32_t run() {
+    for (std::uint32_t b = 0; b < m.blockCount; ++b) {
+      std::uint32_t brick = m.blocks[b].firstBrick;
+      for (std::uint64_t bits = m.blocks[b].filled; bits != 0;) {
+        const Group group = groupAt(bits, brick);
+        bits &= ~group.bricks, brick = group.lastBrick;
+        choose(m.blocks[b], group);
+      }
+    }
+    return m_kept;
+  }
+
+ private:
+  Group groupAt(std::uint64_t bitsLeft, std::uint32_t firstBrick) const {
+    const auto place = static_cast<std::uint32_t>(__builtin_ctzll(bitsLeft));
+    if (m.groupBricks == 1) return {bitsLeft & -bitsLeft, place, firstBrick, firstBrick + 1};
+    const std::uint64_t bricks = std::uint64_t{255} << (place & ~7u);
+    return {bricks, place & ~7u, firstBrick, firstBrick + static_cast<std::uint32_t>(__builtin_popcountll(bitsLeft & bricks))};
+  }
+
+  /// What lies in the bricks around a group that come before it: their points, and the accepted among them.
+  void findBefore(const Block& block, const Group& group, Runs& points, Runs& samples) const {
+    const Neighbourhood& neighbours = m.neighbourhoods[group.place];
+    for (std::uint8_t e = 0; e < neighbours.count; ++e) {
+      const std::uint32_t at = block.before[neighbours.entries[e].block];
+      if (at == kNone) continue;
+      const Block& other = m.blocks[at];
+      std::uint64_t bits = other.filled & neighbours.entries[e].bricks;
+      if (&other == &block) bits &= (std::uint64_t{1} << group.place) - 1;
+      for (; bits != 0; bits &= bits - 1) {
+        const std::uint64_t below = other.filled & ((bits & -bits) - 1);
+        const Brick& brick = m.bricks[other.firstBrick + static_cast<std::uint32_t>(__builtin_popcountll(below))];
+        points.add(brick.first, brick.last);
+        samples.add(brick.acceptedFirst, brick.acceptedLast);
+      }
+    }
+  }
+
+  /// Lowers the squared distances of the points from i on to what accepted samples make them.
+  Lanes lowered(std::uint32_t i, Lanes least, std::uint32_t from, std::uint32_t to) const {
+    const Lanes x = lanesAt(m.alive.x + i), y = lanesAt(m.alive.y + i), z = lanesAt(m.alive.z + i);
+    for (std::uint32_t a = from; a < to; ++a) least = lowered(x, y, z, least, m.accepted.x[a], m.accepted.y[a], m.accepted.z[a]);
+    return least;
+  }
+  static Lanes lowered(const Lanes& x, const Lanes& y, const Lanes& z, const Lanes& least, float atX, float atY, float atZ) {
+    const Lanes dx = x - atX, dy = y - atY, dz = z - atZ;
+    const Lanes here = dx * dx + dy * dy + dz * dz;
+    return here < least ? here : least;
+  }
+
+  /// What a register holds beyond a run's end is either written again by the bricks that follow, or is lowered to
+  /// what lies farther off than what lowered it before.
+  void choose(const Block& block, const Group& group) {
+    Runs points, samples;
+    findBefore(block, group, points, samples);
+    const std::uint32_t first = m.bricks[group.firstBrick].first, last = m.bricks[group.lastBrick - 1].last;
+    for (std::uint32_t v = first; v < last; v += kLanes) {
+      Lanes least = Lanes{} + std::numeric_limits<float>::max();
+      for (std::size_t r = 0; r < samples.count; ++r) least = lowered(v, least, samples.runs[r].from, samples.runs[r].to);
+      put(least, m.squared + v);
+    }
+    for (std::uint32_t b = group.firstBrick; b < group.lastBrick; ++b) {
+      const Brick& brick = m.bricks[b];
+      for (std::uint32_t i = brick.first; brick.nearAt != kNone && i < brick.last; ++i)
+        m.squared[i] = std::min(m.squared[i], m.nearSquared[brick.nearAt + (i - brick.first)]);
+    }
+    const std::uint32_t keptBefore = m_kept;
+    m_brick = group.firstBrick;
+    m.bricks[m_brick].acceptedFirst = m_kept;
+    for (std::uint32_t v = first; v < last; v += kLanes) chooseAmong(v, first, last);
+    closeBricks(last - 1);
+    m.bricks[m_brick].acceptedLast = m_kept;
+    for (std::size_t r = 0; keptBefore < m_kept && r < points.count; ++r)
+      for (std::uint32_t v = points.runs[r].from; v < points.runs[r].to; v += kLanes)
+        put(lowered(v, lanesAt(m.squared + v), keptBefore, m_kept), m.squared + v);
+  }
+
+  /// The points from v on, those before `last`, of a group that begins at `first`.
+  void chooseAmong(std::uint32_t v, std::uint32_t first, std::uint32_t last) {
+    const std::uint32_t inside = last - v >= kLanes ? 0xffff : (1u << (last - v)) - 1;
+    std::uint32_t given = 0;
+    for (std::uint32_t lane = 0; m.given != nullptr && lane < std::min<std::uint32_t>(kLanes, last - v); ++lane)
+      given |= static_cast<std::uint32_t>(m.given[v + lane] != 0) << lane;
+    const Lanes x = lanesAt(m.alive.x + v), y = lanesAt(m.alive.y + v), z = lanesAt(m.alive.z + v);
+    Lanes least = lanesAt(m.squared + v);
+    std::uint32_t taken = 0;
+    for (std::uint32_t open = (atLeast(least, m.spacingSquared) | given) & inside; open != 0;) {
+      const auto lane = static_cast<std::uint32_t>(__builtin_ctz(open));
+      const std::uint32_t i = v + lane;
+      const float atX = m.alive.x[i], atY = m.alive.y[i], atZ = m.alive.z[i];
+      accept(i);
+      taken |= 1u << lane;
+      least = lowered(x, y, z, least, atX, atY, atZ);
+      for (std::uint32_t w = first; w < last; w += kLanes)
+        if (w != v) put(lowered(w, lanesAt(m.squared + w), m_kept - 1, m_kept), m.squared + w);
+      open = (atLeast(least, m.spacingSquared) | given) & inside & ~((2u << lane) - 1);
+    }
+    put(least, m.squared + v);
+    for (; taken != 0; taken &= taken - 1) m.squared[v + static_cast<std::uint32_t>(__builtin_ctz(taken))] = kAccepted;
+  }
+
+  void accept(std::uint32_t i) {
+    closeBricks(i);
+    std::uint8_t split = 0;
+    for (; m_seen <= i; ++m_seen) split = std::max(split, m.alive.splitBits[m_seen]);
+    m.accepted.index[m_kept] = m.alive.index[i];
+    m.accepted.x[m_kept] = m.alive.x[i], m.accepted.y[m_kept] = m.alive.y[i], m.accepted.z[m_kept] = m.alive.z[i];
+    m.accepted.splitBits[m_kept] = split;
+    ++m_kept;
+  }
+
+  /// Goes on to the brick of point i.
+  void closeBricks(std::uint32_t i) {
+    while (i >= m.bricks[m_brick].last) {
+      m.bricks[m_brick].acceptedLast = m_kept;
+      m.bricks[++m_brick].acceptedFirst = m_kept;
+    }
+  }
+
+  const Pass m;
+  std::uint32_t m_kept = 0, m_seen = 0, m_brick = 0;
+};
+
+}  // namespace
+}  // namespace alidade::blue_noise
