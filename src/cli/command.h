@@ -64,6 +64,7 @@ void addConvert(Verbs& verbs);
 void addDemo(Verbs& verbs);
 void addIndex(Verbs& verbs);
 void addInfo(Verbs& verbs);
+void addLevels(Verbs& verbs);
 void addNew(Verbs& verbs);
 void addOverlay(Verbs& verbs);
 void addRefine(Verbs& verbs);

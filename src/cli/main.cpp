@@ -46,6 +46,7 @@ int main(int argc, char** argv) {
   cli::addDemo(verbs);
   cli::addIndex(verbs);
   cli::addInfo(verbs);
+  cli::addLevels(verbs);
   cli::addNew(verbs);
   cli::addOverlay(verbs);
   cli::addRefine(verbs);
