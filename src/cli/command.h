@@ -59,6 +59,7 @@ CLI::Validator checkedBy(Parse parse, const std::string& name) {
       name);
 }
 
+void addCalibrate(Verbs& verbs);
 void addClean(Verbs& verbs);
 void addConvert(Verbs& verbs);
 void addDemo(Verbs& verbs);

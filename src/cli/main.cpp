@@ -42,6 +42,7 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", std::string(softwareName()));
   app.require_subcommand(1);
   cli::Verbs verbs(app);
+  cli::addCalibrate(verbs);
   cli::addConvert(verbs);
   cli::addDemo(verbs);
   cli::addIndex(verbs);

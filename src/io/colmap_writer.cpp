@@ -17,28 +17,16 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// The camera's own model where COLMAP has it, else the smallest that holds its coefficients.
-Result<CameraModel> colmapModelOf(const CameraRecord& record) {
+Result<CameraModel> colmapModelOf(const Intrinsics& in) {
   using enum CameraModel;
-  const Intrinsics& in = record.camera.intrinsics();
   constexpr std::array kOwn = {SimplePinhole, Pinhole, SimpleRadial, Radial, OpenCv4, OpenCv8, OpenCvFisheye};
   if (std::find(kOwn.begin(), kOwn.end(), in.model) != kOwn.end()) return in.model;
   if (coefficientBeyond(in.distortion, "").empty()) return Pinhole;
   if (coefficientBeyond(in.distortion, "k1 k2 p1 p2").empty()) return OpenCv4;
   if (const std::string beyond = coefficientBeyond(in.distortion, "k1 k2 k3 q1 q2 q3 p1 p2"); !beyond.empty())
-    return fail(fmt::format("No camera model of COLMAP has the coefficient {} of the lens", beyond), record.name,
+    return fail(fmt::format("No camera model of COLMAP has the coefficient {} of the lens", beyond), {},
                 "Calibrate with OpenCV's 4, 5 or 8 coefficients, or a fisheye");
   return OpenCv8;
-}
-
-std::string cameraLine(std::size_t id, const CameraRecord& record, CameraModel model) {
-  Intrinsics in = record.camera.intrinsics();
-  in.model = model;
-  in.cx += 0.5;
-  in.cy += 0.5;
-  std::string line = fmt::format("{} {} {} {}", id, cameraModelName(model), in.width, in.height);
-  for (const double parameter : in.parameters()) line += fmt::format(" {}", parameter);
-  return line + "\n";
 }
 
 /// A world point with where it was picked.
@@ -48,12 +36,24 @@ struct Point {
 
 }  // namespace
 
+Result<std::string> colmapCameraLine(std::size_t id, const Intrinsics& intrinsics) {
+  const auto model = colmapModelOf(intrinsics);
+  if (!model) return fail(model.error());
+  Intrinsics in = intrinsics;
+  in.model = *model;
+  in.cx += 0.5;
+  in.cy += 0.5;
+  std::string line = fmt::format("{} {} {} {}", id, cameraModelName(*model), in.width, in.height);
+  for (const double parameter : in.parameters()) line += fmt::format(" {}", parameter);
+  return line + "\n";
+}
+
 Result<void> writeColmap(const Project& project, const ExportedSet& set, const std::string& folder, CameraExport& done) {
   std::string cameras = "# CAMERA_ID MODEL WIDTH HEIGHT PARAMS[]\n";
   for (std::size_t i = 0; i < set.cameras.size(); ++i) {
-    const auto model = colmapModelOf(*set.cameras[i]);
-    if (!model) return fail(model.error());
-    cameras += cameraLine(i + 1, *set.cameras[i], *model);
+    const auto line = colmapCameraLine(i + 1, set.cameras[i]->camera.intrinsics());
+    if (!line) return fail(line.error().in(set.cameras[i]->name));
+    cameras += *line;
   }
 
   std::map<std::int64_t, std::size_t> imageOf;
