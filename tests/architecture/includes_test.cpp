@@ -26,7 +26,7 @@ const std::vector<std::vector<std::string>> kFloors = {
     {"cloud", "cleaning", "gpu", "targets"},
     {"plugin_api", "raster"},
     {"io", "scene", "overlay", "inspect", "adjust", "simulate"},
-    {"report"},
+    {"report", "align"},
     {"app"},
     {"cli"},
 };
@@ -42,7 +42,7 @@ const std::map<std::string, std::vector<std::string>> kOwners = {
     {"vtk", {"src/scene"}},
     {"ceres/", {"src/adjust"}},
     {"pcl/", {"src/cleaning"}},
-    {"opencv2/", {"src/io", "src/targets", "plugins/opencv-calib", "plugins/pictures", "plugins/e57"}},
+    {"opencv2/", {"src/io", "src/targets", "plugins/opencv-calib", "plugins/pictures", "plugins/e57", "src/align"}},
     {"pugixml", {"plugins/e57", "plugins/metashape", "plugins/realitycapture"}},
     {"ifcpp/", {"plugins/ifc"}},
     {"assimp/", {"plugins/mesh"}},

@@ -1,0 +1,23 @@
+// SPDX-FileCopyrightText: 2026 the Alidade authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#pragma once
+
+#include "align/auto_align.h"
+#include "app/workspace.h"
+#include "base/error.h"
+#include "base/progress.h"
+#include "survey/project.h"
+
+namespace alidade {
+
+/// The visible scans of a project as a scene to align pictures with; the visible designs' surfaces where there is no scan.
+AlignmentScene alignmentScene(const Project& project, const LoadedData& data);
+
+/// Aligns a frame with the scans from the pose that it has. The project gets the new pose, with its quality, where it
+/// converged and not `dryRun`; else it is unchanged. Error, with what to do, for a frame without pose, camera or
+/// picture and for what alignPicture() refuses.
+Result<AlignmentSummary> autoAlignFrame(Project& project, const AlignmentScene& scene, PictureCache& pictures, FrameId frame,
+                                        const AlignmentOptions& options, bool dryRun, const Progress& progress);
+
+}  // namespace alidade
