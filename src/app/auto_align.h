@@ -11,7 +11,7 @@
 
 namespace alidade {
 
-/// The visible scans of a project as a scene to align pictures with; the visible designs' surfaces where there is no scan.
+/// The visible scans of a project as a scene to align pictures with.
 AlignmentScene alignmentScene(const Project& project, const LoadedData& data);
 
 /// Aligns a frame with the scans from the pose that it has. The project gets the new pose, with its quality, where it

@@ -9,6 +9,7 @@
 #include "app/jobs.h"
 #include "app/refine_network.h"
 #include "cli/command.h"
+#include "cli/refine_pictures.h"
 #include "io/project_store.h"
 
 namespace alidade::cli {
@@ -20,7 +21,9 @@ using Json = nlohmann::ordered_json;
 struct Arguments {
   std::string project, frame, observations, lock, free;
   std::vector<std::string> at;
-  bool dryRun = false;
+  bool dryRun = false, automatic = false, sequence = false;
+  double withinPx = 1;
+  int keyframes = 1;
 };
 
 /// What is free beyond the poses.
@@ -194,12 +197,20 @@ Result<Answer> runNetwork(Project& project, const Arguments& arguments, const st
   return answerOf(jsonOf(*refinement, *summary, arguments.dryRun), summary->report(refinement->network), summary->converged);
 }
 
+Result<Answer> runPictures(const Arguments& arguments, const ResectionOptions& locks, const Progress& progress) {
+  RefinePictures wanted{arguments.project, arguments.frame, {}, arguments.keyframes, arguments.dryRun};
+  wanted.options.lockPosition = locks.lockPosition, wanted.options.lockAttitude = locks.lockAttitude;
+  wanted.options.acceptedPx = arguments.withinPx;
+  return arguments.sequence ? refineTogether(wanted, progress) : refineAutomatically(wanted, progress);
+}
+
 Result<Answer> run(const Arguments& arguments, const Progress& progress) {
   ResectionOptions options;
   NetworkFreedom freedom;
   if (auto done = applyLocks(arguments.lock, options); !done) return fail(done.error());
   if (auto done = applyFree(arguments.free, freedom); !done) return fail(done.error());
   freedom.lockPosition = options.lockPosition, freedom.lockAttitude = options.lockAttitude;
+  if (arguments.automatic || arguments.sequence) return runPictures(arguments, options, progress);
   for (const std::string& text : arguments.at) {
     auto point = parsePoint(text);
     if (!point) return fail(point.error());
@@ -238,6 +249,16 @@ void addRefine(Verbs& verbs) {
       ->check(checkedBy([](const std::string& list) { NetworkFreedom ignored; return applyFree(list, ignored); }, "LIST"));
   command->add_option("--at", arguments->at, "E,N,H where the expected error is wanted")
       ->check(checkedBy(parsePoint, "POINT"));
+  command->add_flag("--auto", arguments->automatic,
+                    "Align --frame, or every frame with a pose, with the scans: from up to 3 degrees and 0.3 m off")
+      ->excludes(command->get_option("--observations"));
+  command->add_flag("--sequence", arguments->sequence,
+                    "Align all frames with the scans and adjust them together: tie points, smooth motion, alarm where a fixed camera moved")
+      ->excludes("--auto", "--observations", "--frame");
+  command->add_option("--keyframes", arguments->keyframes, "With --sequence: align every so many frames; those between follow")
+      ->check(CLI::Range(1, 10000));
+  command->add_option("--within", arguments->withinPx, "With --auto and --sequence: the 95 % error, pixels of 1920 across, up to which a pose is believed")
+      ->check(CLI::Range(0.05, 50.0));
   command->add_flag("--dry-run", arguments->dryRun, "Report only; leave the project as it is");
 }
 

@@ -1,0 +1,26 @@
+// SPDX-FileCopyrightText: 2026 the Alidade authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#pragma once
+
+#include <string>
+
+#include "align/auto_align.h"
+#include "cli/command.h"
+
+namespace alidade::cli {
+
+struct RefinePictures {
+  std::string project, frame;  ///< no frame: all that have a pose
+  AlignmentOptions options;
+  int keyframes = 1;  ///< of a sequence: every so many frames
+  bool dryRun = false;
+};
+
+/// `refine --auto`: each frame by itself against the scans.
+Result<Answer> refineAutomatically(const RefinePictures& wanted, const Progress& progress);
+
+/// `refine --sequence`: all frames together, with tie points and smoothness.
+Result<Answer> refineTogether(const RefinePictures& wanted, const Progress& progress);
+
+}  // namespace alidade::cli
