@@ -18,7 +18,7 @@ namespace alidade {
 /// What is known of the site in three dimensions: pictures are aligned to it.
 struct AlignmentScene {
   std::vector<std::shared_ptr<const PointStore>> scans;
-  std::vector<std::shared_ptr<const OccluderMesh>> surfaces;  ///< of the scanners' grids, or made of designs
+  std::vector<std::shared_ptr<const OccluderMesh>> surfaces;  ///< of the scanners' grids
 
   bool empty() const { return scans.empty() && surfaces.empty(); }
   /// Some scan holds colours or intensities.
