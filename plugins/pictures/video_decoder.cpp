@@ -5,38 +5,65 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <exception>
 #include <filesystem>
-#include <vector>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <tuple>
 
 #include <opencv2/core.hpp>
+#include <opencv2/imgproc.hpp>
 #include <opencv2/videoio.hpp>
 
+#include "base/input_file.h"
+#include "pictures/mp4_times.h"
 #include "plugin_api/picture_header.h"
+#include "plugin_api/text_file.h"
 
 namespace alidade {
 
 namespace {
 
-constexpr std::int64_t kWalkFrames = 48;       // a jump no longer than this is decoded through
-constexpr std::int64_t kComparedFrames = 40;   // first frames that seeks are compared on
-constexpr std::int64_t kMaxFrames = std::int64_t(1) << 31;
+constexpr std::int64_t kWalkFrames = 24;  // a jump no longer than this is decoded through
+/// At the end of the file the decoder hands over what it still holds, and the stamps that the capture gives to those
+/// frames are not theirs: so many are known by counting alone.
+constexpr std::int64_t kTailFrames = 40;
+constexpr std::int64_t kMaxFrames = std::int64_t(1) << 26;
 constexpr std::int64_t kMaxFramePixels = std::int64_t(1) << 27;
 
-/// FNV-1a over 64-bit words; enough to tell neighbouring frames apart.
-std::uint64_t checksum(const cv::Mat& frame) {
-  std::uint64_t hash = 14695981039346656037ull;
-  for (int y = 0; y < frame.rows; ++y) {
-    const unsigned char* row = frame.ptr(y);
-    const std::size_t bytes = static_cast<std::size_t>(frame.cols) * frame.elemSize();
-    for (std::size_t i = 0; i + 8 <= bytes; i += 8) {
-      std::uint64_t word = 0;
-      std::memcpy(&word, row + i, 8);
-      hash = (hash ^ word) * 1099511628211ull;
-    }
+/// Times read off by decoding a whole video, kept for the next time that it is opened: by path, size and date.
+class MeasuredTimes {
+ public:
+  static MeasuredTimes& instance() {
+    static MeasuredTimes all;
+    return all;
   }
-  return hash;
+  std::optional<std::vector<double>> find(const std::string& path) {
+    const std::lock_guard lock(m_mutex);
+    const auto it = m_times.find(keyOf(path));
+    return it == m_times.end() ? std::nullopt : std::optional(it->second);
+  }
+  void keep(const std::string& path, const std::vector<double>& times) {
+    const std::lock_guard lock(m_mutex);
+    if (m_times.size() >= 16) m_times.clear();
+    m_times[keyOf(path)] = times;
+  }
+
+ private:
+  using Key = std::tuple<std::string, std::uintmax_t, std::filesystem::file_time_type>;
+  static Key keyOf(const std::string& path) {
+    std::error_code error;
+    const auto size = std::filesystem::file_size(path, error);
+    return {path, size, std::filesystem::last_write_time(path, error)};
+  }
+  std::mutex m_mutex;
+  std::map<Key, std::vector<double>> m_times;
+};
+
+bool isMp4(const std::string& path) {
+  const std::string extension = lowerCase(std::filesystem::path(path).extension().string());
+  return extension == ".mp4" || extension == ".m4v" || extension == ".mov";
 }
 
 }  // namespace
@@ -59,6 +86,14 @@ bool VideoDecoder::reopen() {
   return true;
 }
 
+bool VideoDecoder::grab() {
+  if (!m_capture->grab()) return false;
+  ++m_walked;
+  return true;
+}
+
+double VideoDecoder::stampSecs() const { return m_capture->get(cv::CAP_PROP_POS_MSEC) / 1000.0; }
+
 Result<std::unique_ptr<VideoDecoder>> VideoDecoder::open(const std::string& path) {
   try {
     std::unique_ptr<VideoDecoder> video(new VideoDecoder(path));
@@ -71,81 +106,107 @@ Result<std::unique_ptr<VideoDecoder>> VideoDecoder::open(const std::string& path
                       std::to_string(video->m_height) + " pixels", path, advice);
     const double rate = video->m_capture->get(cv::CAP_PROP_FPS);
     video->m_framesPerSecond = std::isfinite(rate) && rate > 0 && rate <= 10000 ? rate : 0;
-    const double count = video->m_capture->get(cv::CAP_PROP_FRAME_COUNT);
-    const bool sensible = std::isfinite(count) && count >= 1 && count < double(kMaxFrames);
-    // No coding keeps a frame in less than a byte.
-    const auto bytes = std::filesystem::file_size(path);
-    if (sensible && count <= double(bytes)) video->m_frameCount = static_cast<std::int64_t>(count);
-    else if (!video->countFrames()) return fail("The video holds no frame that can be decoded", path, advice);
+    if (!video->grab()) return fail("The video holds no frame that can be decoded", path, advice);
+    video->m_next = 1;
+    video->m_firstStamp = video->stampSecs();
+    if (auto found = video->findTimes(); !found) return fail(found.error());
     return video;
   } catch (const std::exception& error) {
     return fail(std::string("The video cannot be opened: ") + error.what(), path, "Convert it to MP4 with H.264");
   }
 }
 
-bool VideoDecoder::countFrames() {
-  while (m_frameCount < kMaxFrames && m_capture->grab()) ++m_frameCount;
-  return m_frameCount > 0 && reopen();
+/// The container's index where it tells, the constant rate of AVI, else all frames are decoded once.
+Result<void> VideoDecoder::findTimes() {
+  if (isMp4(m_path)) {
+    const auto file = InputFile::open(m_path);
+    if (!file) return fail(file.error());
+    auto times = mp4FrameTimes(*file);
+    if (!times) return fail(times.error());
+    if (*times && !(*times)->empty()) {
+      setTimes(std::move(**times));
+      return {};
+    }
+  } else if (lowerCase(std::filesystem::path(m_path).extension().string()) == ".avi" && m_framesPerSecond > 0) {
+    const double count = m_capture->get(cv::CAP_PROP_FRAME_COUNT);
+    // No coding keeps a frame in less than a byte.
+    const double bytes = static_cast<double>(std::filesystem::file_size(m_path));
+    if (std::isfinite(count) && count >= 1 && count < double(kMaxFrames) && count <= bytes) {
+      std::vector<double> times(static_cast<std::size_t>(count));
+      for (std::size_t i = 0; i < times.size(); ++i) times[i] = static_cast<double>(i) / m_framesPerSecond;
+      setTimes(std::move(times));
+      return {};
+    }
+  }
+  return scanTimes();
 }
 
-bool VideoDecoder::grabUpTo(std::int64_t index) {
+Result<void> VideoDecoder::scanTimes() {
+  m_timesMeasured = true;
+  if (auto known = MeasuredTimes::instance().find(m_path)) {
+    setTimes(std::move(*known));
+    return {};
+  }
+  if (!reopen()) return fail(decodeError(0, "The video cannot be opened again"));
+  std::vector<double> times;
+  while (static_cast<std::int64_t>(times.size()) < kMaxFrames && grab()) times.push_back(stampSecs() - m_firstStamp);
+  if (times.empty()) return fail(decodeError(0, "The video holds no frame that can be decoded"));
+  const double step = m_framesPerSecond > 0 ? 1 / m_framesPerSecond : 1e-3;
+  for (auto i = std::max<std::int64_t>(1, static_cast<std::int64_t>(times.size()) - kTailFrames); i < static_cast<std::int64_t>(times.size()); ++i)
+    if (auto& time = times[static_cast<std::size_t>(i)]; !(time > times[static_cast<std::size_t>(i - 1)]))
+      time = times[static_cast<std::size_t>(i - 1)] + step;
+  MeasuredTimes::instance().keep(m_path, times);
+  setTimes(std::move(times));
+  if (!reopen()) return fail(decodeError(0, "The video cannot be opened again"));
+  return {};
+}
+
+void VideoDecoder::setTimes(std::vector<double> times) {
+  m_times = std::move(times);
+  m_timesRise = true;
+  for (std::size_t i = 1; i < m_times.size(); ++i)
+    if (!(m_times[i] > m_times[i - 1] + 1e-6)) m_timesRise = false;
+  if (m_framesPerSecond == 0 && m_times.size() > 1 && m_times.back() > 0)
+    m_framesPerSecond = static_cast<double>(m_times.size() - 1) / m_times.back();
+}
+
+/// The frame of that time; -1 where no frame has it.
+std::int64_t VideoDecoder::indexOfStamp(double secs) const {
+  const auto after = std::lower_bound(m_times.begin(), m_times.end(), secs);
+  std::int64_t nearest = -1;
+  double distance = 2e-3;  // stamps are rounded to a container's unit, a millisecond at worst
+  for (auto it = after == m_times.begin() ? after : after - 1; it != m_times.end() && it <= after; ++it)
+    if (std::abs(*it - secs) < distance) distance = std::abs(*it - secs), nearest = it - m_times.begin();
+  return nearest;
+}
+
+bool VideoDecoder::walkTo(std::int64_t index) {
   if (m_next > index && !reopen()) return false;
   while (m_next <= index) {
-    if (!m_capture->grab()) return false;
+    if (!grab()) return false;
     ++m_next;
   }
   return true;
 }
 
-bool VideoDecoder::seekTo(std::int64_t index) {
-  if (!m_capture->set(cv::CAP_PROP_POS_FRAMES, static_cast<double>(index))) return false;
-  if (std::llround(m_capture->get(cv::CAP_PROP_POS_FRAMES)) != index || !m_capture->grab()) return false;
-  m_next = index + 1;
-  return true;
-}
-
-std::uint64_t VideoDecoder::checksumOfGrabbed() {
-  cv::Mat frame;
-  return m_capture->retrieve(frame) ? checksum(frame) : 0;
-}
-
-bool VideoDecoder::compareSeeks() {
-  const std::int64_t count = std::min(kComparedFrames, m_frameCount);
-  if (!reopen()) return false;
-  std::vector<std::uint64_t> decoded;
-  std::vector<double> times;
-  while (static_cast<std::int64_t>(decoded.size()) < count && m_capture->grab()) {
-    decoded.push_back(checksumOfGrabbed());
-    times.push_back(m_capture->get(cv::CAP_PROP_POS_MSEC));
+/// Leaves the stream at a frame no later than `index`, known by its stamp; false where no seek gets there.
+bool VideoDecoder::seekBefore(std::int64_t index) {
+  if (!m_timesRise || m_framesPerSecond <= 0) return false;
+  // A capture that came to the end of the file stays there.
+  if (m_next >= frameCount() && !reopen()) return false;
+  // The capture counts frames at the mean rate, which only leads near the place where the rate varies.
+  const std::int64_t known = std::min(index, frameCount() - kTailFrames);
+  if (known < 1) return false;
+  const double counted = m_times[static_cast<std::size_t>(known)] * m_framesPerSecond;
+  for (double back = 2; back < counted; back *= 4) {
+    if (!m_capture->set(cv::CAP_PROP_POS_FRAMES, std::floor(counted - back)) || !grab()) return false;
+    const std::int64_t there = indexOfStamp(stampSecs() - m_firstStamp);
+    if (there < 0) return false;
+    if (there > known) continue;
+    m_next = there + 1;
+    return true;
   }
-  // Backwards, so that every one of them is a real seek.
-  const auto last = static_cast<std::int64_t>(decoded.size()) - 1;
-  for (std::int64_t index = last; index >= 0; index -= std::max<std::int64_t>(1, last / 5)) {
-    const auto at = static_cast<std::size_t>(index);
-    if (!seekTo(index) || checksumOfGrabbed() != decoded[at]) return false;
-    if (std::abs(m_capture->get(cv::CAP_PROP_POS_MSEC) - times[at]) > 0.5) return false;
-  }
-  // A changing frame rate breaks FFmpeg's count later on: the far end must lie on the same raster.
-  if (m_frameCount > count && last > 0 && m_framesPerSecond > 0) {
-    if (!seekTo(m_frameCount - 1 - m_frameCount / 50)) return false;
-    const double expected = times.front() + 1000.0 * double(m_next - 1) / m_framesPerSecond;
-    if (std::abs(m_capture->get(cv::CAP_PROP_POS_MSEC) - expected) > 500.0 / m_framesPerSecond) return false;
-    for (std::size_t i = 1; i < times.size(); ++i)
-      if (std::abs(times[i] - times.front() - 1000.0 * double(i) / m_framesPerSecond) > 500.0 / m_framesPerSecond) return false;
-  }
-  return last >= 0;
-}
-
-bool VideoDecoder::seekIsExact() {
-  if (!m_seekIsExact) {
-    try {
-      m_seekIsExact = compareSeeks();
-      if (!reopen()) m_seekIsExact = false;
-    } catch (const std::exception&) {
-      m_seekIsExact = false;
-    }
-  }
-  return *m_seekIsExact;
+  return false;
 }
 
 Result<ColourImage> VideoDecoder::retrieveFrame(std::int64_t index) {
@@ -153,28 +214,34 @@ Result<ColourImage> VideoDecoder::retrieveFrame(std::int64_t index) {
   if (!m_capture->retrieve(frame) || frame.empty()) return fail(decodeError(index, "The frame cannot be decoded"));
   if (frame.depth() != CV_8U || frame.cols != m_width || frame.rows != m_height)
     return fail(decodeError(index, "The frame differs in size or kind from the first one"));
-  return colourImageFrom({frame.data, frame.step[0], frame.cols, frame.rows, frame.channels(), 1});
+  if (frame.channels() != 3)
+    return colourImageFrom({frame.data, frame.step[0], frame.cols, frame.rows, frame.channels(), 1});
+  ColourImage image(m_width, m_height);
+  cv::Mat into(m_height, m_width, CV_8UC4, image.data());
+  cv::cvtColor(frame, into, cv::COLOR_BGR2RGBA);
+  return image;
 }
 
 Result<ColourImage> VideoDecoder::frame(std::int64_t index) {
-  if (index < 0 || index >= m_frameCount)
+  if (index < 0 || index >= frameCount())
     return fail("The video has no frame " + std::to_string(index), m_path,
-                "It has frames 0 to " + std::to_string(m_frameCount - 1));
+                "It has frames 0 to " + std::to_string(frameCount() - 1));
   try {
-    const bool near = index >= m_next && index - m_next <= kWalkFrames;
-    const bool nearStart = index < m_next && index <= kWalkFrames;
-    bool there = false;
-    if (!near && !nearStart && seekIsExact()) there = seekTo(index);
-    if (!there) {
-      // A failed seek leaves the stream anywhere.
-      if (!near && !reopen()) return fail(decodeError(index, "The video cannot be opened again"));
-      there = grabUpTo(index);
-    }
-    if (!there) {
+    // One back is the frame that was grabbed last.
+    const bool near = index >= m_next - 1 && index - m_next <= kWalkFrames;
+    if (!near && !(index > kWalkFrames && seekBefore(index)) && !reopen())
+      return fail(decodeError(index, "The video cannot be opened again"));
+    if (m_next != index + 1 && !walkTo(index)) {
       const std::int64_t reached = m_next;
       reopen();
       return fail(decodeError(index, "The video ends after " + std::to_string(reached) + " frames, its header promises " +
-                                         std::to_string(m_frameCount)));
+                                         std::to_string(frameCount())));
+    }
+    if (m_timesRise && index < frameCount() - kTailFrames && indexOfStamp(stampSecs() - m_firstStamp) != index) {
+      // The container's index was not what the decoder shows: measured once, it is.
+      if (m_timesMeasured) return fail(decodeError(index, "The video's time stamps change from one reading to the next"));
+      if (auto scanned = scanTimes(); !scanned) return fail(scanned.error());
+      return this->frame(index);
     }
     return retrieveFrame(index);
   } catch (const std::exception& error) {

@@ -5,8 +5,8 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
+#include <vector>
 
 #include "base/error.h"
 #include "base/image.h"
@@ -17,8 +17,10 @@ class VideoCapture;
 
 namespace alidade {
 
-/// Frames of one video by number. Going on by a few frames decodes them; a jump seeks where the
-/// container's seek proved exact, else starts again from the first frame.
+/// Frames of one video by number, in the order in which they are shown. What a decoder hands over is known by its
+/// time stamp, which is looked up among those of all frames: so a seek, which a container may answer with any frame,
+/// is walked on from to the very one. Videos whose stamps do not tell frames apart (double or falling ones) are decoded
+/// from the start at every jump back.
 ///
 /// Not thread-safe. No exception of OpenCV leaves it.
 class VideoDecoder {
@@ -28,35 +30,42 @@ class VideoDecoder {
 
   int width() const { return m_width; }
   int height() const { return m_height; }
+  /// As the container says, else from the time stamps; 0 where neither tells.
   double framesPerSecond() const { return m_framesPerSecond; }
-  /// As the container says; counted by decoding where it says nothing sensible.
-  std::int64_t frameCount() const { return m_frameCount; }
+  std::int64_t frameCount() const { return static_cast<std::int64_t>(m_times.size()); }
+  /// Seconds from the first frame: from the container's index, or read off the decoded frames.
+  const std::vector<double>& times() const { return m_times; }
+  /// True where the stamps rise from frame to frame, so that jumps may seek.
+  bool timesRise() const { return m_timesRise; }
 
   Result<ColourImage> frame(std::int64_t index);
 
-  /// Whether jumps may seek: compares seeks into the first frames with decoding up to there. Done by
-  /// itself at the first jump.
-  bool seekIsExact();
+  /// Frames walked over so far one by one, shown or not; a seek within the capture counts as none.
+  std::int64_t walkedFrames() const { return m_walked; }
 
  private:
   explicit VideoDecoder(std::string path);
 
   bool reopen();
-  bool countFrames();
-  bool grabUpTo(std::int64_t index);
-  bool seekTo(std::int64_t index);
-  std::uint64_t checksumOfGrabbed();
-  bool compareSeeks();
+  bool grab();
+  double stampSecs() const;
+  Result<void> findTimes();
+  Result<void> scanTimes();
+  void setTimes(std::vector<double> times);
+  bool walkTo(std::int64_t index);
+  bool seekBefore(std::int64_t index);
+  std::int64_t indexOfStamp(double secs) const;
   Result<ColourImage> retrieveFrame(std::int64_t index);
   Error decodeError(std::int64_t index, const std::string& why) const;
 
   std::string m_path;
   std::unique_ptr<cv::VideoCapture> m_capture;
   int m_width = 0, m_height = 0;
-  double m_framesPerSecond = 0;
-  std::int64_t m_frameCount = 0;
+  double m_framesPerSecond = 0, m_firstStamp = 0;
+  std::vector<double> m_times;
+  bool m_timesRise = false, m_timesMeasured = false;
   std::int64_t m_next = 0;  // the frame that the next grab gives
-  std::optional<bool> m_seekIsExact;
+  std::int64_t m_walked = 0;
 };
 
 }  // namespace alidade

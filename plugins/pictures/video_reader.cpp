@@ -82,11 +82,12 @@ Result<PictureSetInfo> VideoReader::inspect(const std::string& path) const {
   const std::int64_t count = (*decoder)->frameCount();
   info.pictures.reserve(static_cast<std::size_t>(count));
   for (std::int64_t i = 0; i < count; ++i)
-    info.pictures.push_back({"frame " + std::to_string(i), path, info.framesPerSecond > 0 ? double(i) / info.framesPerSecond : 0});
+    info.pictures.push_back({"frame " + std::to_string(i), path, (*decoder)->times()[static_cast<std::size_t>(i)]});
   char rate[32];
   std::snprintf(rate, sizeof rate, "%.4g", info.framesPerSecond);
+  const std::string stamps = (*decoder)->timesRise() ? "" : "; its time stamps do not rise from frame to frame";
   info.details = "Video, " + std::to_string(info.width) + " × " + std::to_string(info.height) + ", " +
-                 std::to_string(count) + " frames" + (info.framesPerSecond > 0 ? ", " + std::string(rate) + " a second" : "");
+                 std::to_string(count) + " frames" + (info.framesPerSecond > 0 ? ", " + std::string(rate) + " a second" : "") + stamps;
   return info;
 }
 

@@ -9,7 +9,7 @@ namespace alidade {
 
 /// A video file (MP4, MOV, AVI, Matroska, WebM, MPEG) through OpenCV's FFmpeg. Frames are numbered
 /// from 0 in the order they are shown; the same number always gives the same frame, whatever was read
-/// before: seeking is trusted only after it was compared with decoding from the start.
+/// before; see video_decoder.h. Times are the container's time stamps, from the first frame.
 class VideoReader : public PictureReader {
  public:
   ReaderDescription description() const override;
