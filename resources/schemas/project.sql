@@ -1,7 +1,7 @@
 -- SPDX-FileCopyrightText: 2026 the Alidade authors
 -- SPDX-License-Identifier: BSD-3-Clause
 --
--- The project file, version 2 (PRAGMA user_version; application_id is "ALID"). Lengths are metres in
+-- The project file, version 3 (PRAGMA user_version; application_id is "ALID"). Lengths are metres in
 -- the project's own system (E, N, up), angles radians, times seconds, pixels have OpenCV's origin.
 -- `position` keeps the order of a list from 0. Numbers without a type keep every bit of a double: a
 -- REAL column would turn -0.0 into 0. NULL in such a column is NaN. Text that is not UTF-8 is a blob.
@@ -60,6 +60,30 @@ CREATE TABLE camera (
 CREATE TABLE video (
   position INTEGER PRIMARY KEY, id, name, source_path, source_size, source_hash,
   frames_per_second, frame_count
+);
+
+-- Since version 3: cameras that read row by row, videos whose times are not the container's, trajectories with
+-- their clocks (pose clock minus picture clock) and the frames that they serve. `camera`, `video`, `frame` and
+-- trajectory_pose.trajectory are positions, frame_trajectory.trajectory is an id.
+CREATE TABLE camera_shutter (
+  position INTEGER PRIMARY KEY, camera, readout_s
+);
+
+CREATE TABLE video_timing (
+  position INTEGER PRIMARY KEY, video, timing
+);
+
+CREATE TABLE trajectory (
+  position INTEGER PRIMARY KEY, id, name, source_path, source_size, source_hash,
+  clock_offset_s, has_clock_offset_std, clock_offset_std_s
+);
+
+CREATE TABLE trajectory_pose (
+  position INTEGER PRIMARY KEY, trajectory, time_s, qw, qx, qy, qz, tx, ty, tz
+);
+
+CREATE TABLE frame_trajectory (
+  position INTEGER PRIMARY KEY, frame, trajectory
 );
 
 CREATE TABLE frame (

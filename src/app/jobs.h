@@ -46,8 +46,13 @@ Result<NewProjectOutcome> newProject(const NewProjectInputs& inputs, const Progr
 Result<NewProjectOutcome> addToProject(const Project& project, const std::vector<std::string>& paths,
                                        const Progress& progress);
 
-/// Writes the demo site and a project file demo.alidade in `folder`; returns the project's path.
-Result<std::string> makeDemo(const std::string& folder, const DemoOptions& options, const Progress& progress);
+/// Writes the demo site and a project file demo.alidade in `folder`; returns the project's path. `asVideo`: the project is of
+/// video.mp4 (H.264) with the trajectory's poses, instead of the pictures with theirs.
+Result<std::string> makeDemo(const std::string& folder, const DemoOptions& options, const Progress& progress, bool asVideo = false);
+
+/// Writes picture files as a video, in that order.
+Result<void> encodeVideo(const std::vector<std::string>& pictures, const std::string& path, double framesPerSecond,
+                         const Progress& progress);
 
 /// A picture rendered and ready to be saved.
 struct RenderedFrame {

@@ -4,13 +4,18 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <optional>
 
 #include "app/jobs.h"
 #include "app/pose_matching.h"
 #include "cloud/store_folder.h"
+#include "io/picture_file.h"
 #include "io/project_store.h"
 #include "io/reader_registry.h"
 #include "io/rig_file.h"
+#include "io/video_writer.h"
+#include "simulate/camera_path.h"
+#include "simulate/pose_writer.h"
 
 namespace alidade {
 
@@ -219,6 +224,12 @@ class Assembler {
     video.source = std::move(*source);
     video.framesPerSecond = set.framesPerSecond;
     video.frameCount = static_cast<std::int64_t>(set.pictures.size());
+    for (std::size_t i = 1; i < set.pictures.size(); ++i) {
+      if (set.pictures[i].timeSecs > set.pictures[i - 1].timeSecs) continue;
+      m_outcome.notes.push_back("The time stamps of " + path + " do not rise at frame " + std::to_string(i) +
+                                ": poses cannot be laid on them. Give it times of its own: alidade-cli clock --rate or --times");
+      break;
+    }
     for (std::size_t i = 0; i < set.pictures.size(); ++i) {
       Frame frame;
       frame.id.value = nextFrameId();
@@ -350,19 +361,48 @@ Result<NewProjectOutcome> addToProject(const Project& project, const std::vector
   return outcome;
 }
 
-Result<std::string> makeDemo(const std::string& folder, const DemoOptions& options, const Progress& progress) {
-  auto site = writeDemoSite(folder, options, progress.part(0.0, 0.95));
+Result<void> encodeVideo(const std::vector<std::string>& pictures, const std::string& path, double framesPerSecond,
+                         const Progress& progress) {
+  std::optional<VideoWriter> writer;
+  for (std::size_t i = 0; i < pictures.size(); ++i) {
+    if (progress.cancelled()) return fail(cancelledError());
+    progress.report(static_cast<double>(i) / static_cast<double>(pictures.size()), "Writing the video");
+    const auto picture = readPicture(pictures[i]);
+    if (!picture) return fail(picture.error());
+    if (!writer) {
+      auto made = VideoWriter::create(path, picture->width(), picture->height(), framesPerSecond);
+      if (!made) return fail(made.error());
+      writer.emplace(std::move(*made));
+    }
+    if (auto written = writer->write(*picture); !written) return written;
+  }
+  if (!writer) return fail("There are no pictures to make a video of", path, "Give pictures");
+  return writer->finish();
+}
+
+Result<std::string> makeDemo(const std::string& folder, const DemoOptions& options, const Progress& progress, bool asVideo) {
+  auto site = writeDemoSite(folder, options, progress.part(0.0, asVideo ? 0.9 : 0.95));
   if (!site) return fail(site.error());
   NewProjectInputs inputs;
   inputs.scans = {site->scan};
   inputs.designs = {site->design};
-  inputs.images = {site->images};
-  inputs.cameras = {site->cameras};
   inputs.stakePoints = {site->stakePoints};
   inputs.controlPoints = {site->controlPoints};
+  if (asVideo) {
+    std::vector<std::string> pictures;
+    for (int i = 0; i < site->frameCount; ++i) pictures.push_back((std::filesystem::path(site->images) / frameFileName(i)).string());
+    const std::string video = (std::filesystem::path(folder) / "video.mp4").string();
+    if (auto written = encodeVideo(pictures, video, kFramesPerSecond, progress.part(0.9, 0.95)); !written) return fail(written.error());
+    inputs.videos = {video};
+    inputs.cameras = {site->calibration, site->trajectory};
+  } else {
+    inputs.images = {site->images};
+    inputs.cameras = {site->cameras};
+  }
   auto made = newProject(inputs, progress.part(0.95, 1.0));
   if (!made) return fail(made.error());
   made->project.name = "Sample inspection";
+  for (CameraRecord& camera : made->project.cameras) camera.readoutSecs = options.readoutSecs;
   const std::string path = (std::filesystem::path(folder) / "demo.alidade").string();
   if (auto saved = saveProject(made->project, path); !saved) return fail(saved.error());
   return path;

@@ -13,6 +13,7 @@
 #include <tuple>
 #include <unordered_map>
 
+#include "app/pose_clock.h"
 #include "plugin_api/picture_header.h"
 
 namespace alidade {
@@ -163,63 +164,68 @@ NameMatch matchByName(const std::vector<Frame*>& frames, const CameraSet& set, S
   return match;
 }
 
-/// A trajectory: poses by time, sorted.
-struct Trajectory {
-  std::vector<const PosedPicture*> poses;
-  double step = 0;  // median
+PoseTrack trackOf(const CameraSet& set) {
+  std::vector<PoseSample> samples;
+  for (const auto& picture : set.pictures)
+    if (picture.hasTime && picture.cameraFromWorld) samples.push_back({picture.timeSecs, *picture.cameraFromWorld});
+  return PoseTrack(std::move(samples));
+}
 
-  explicit Trajectory(const CameraSet& set) {
-    for (const auto& picture : set.pictures)
-      if (picture.hasTime && picture.cameraFromWorld) poses.push_back(&picture);
-    std::stable_sort(poses.begin(), poses.end(), [](auto* a, auto* b) { return a->timeSecs < b->timeSecs; });
-    std::vector<double> steps;
-    for (std::size_t i = 1; i < poses.size(); ++i) steps.push_back(poses[i]->timeSecs - poses[i - 1]->timeSecs);
-    if (steps.empty()) return;
-    std::nth_element(steps.begin(), steps.begin() + steps.size() / 2, steps.end());
-    step = steps[steps.size() / 2];
-  }
-
-  std::optional<RigidTransform> at(double time) const {
-    if (poses.empty()) return std::nullopt;
-    const double slack = 1e-3 + 0.01 * step;
-    const auto after = std::lower_bound(poses.begin(), poses.end(), time,
-                                        [](const PosedPicture* p, double t) { return p->timeSecs < t; });
-    if (after == poses.end())
-      return time - poses.back()->timeSecs <= slack ? poses.back()->cameraFromWorld : std::nullopt;
-    if (after == poses.begin())
-      return poses.front()->timeSecs - time <= slack ? poses.front()->cameraFromWorld : std::nullopt;
-    const PosedPicture& a = **(after - 1);
-    const PosedPicture& b = **after;
-    const double gap = b.timeSecs - a.timeSecs;
-    if (gap > 3 * step) return std::nullopt;
-    if (!(gap > 0)) return b.cameraFromWorld;
-    return interpolateCameraPose(*a.cameraFromWorld, *b.cameraFromWorld, (time - a.timeSecs) / gap);
-  }
-};
+TrajectoryId addTrajectory(Project& project, const std::string& path, PoseTrack track) {
+  Trajectory trajectory;
+  for (const Trajectory& there : project.trajectories) trajectory.id.value = std::max(trajectory.id.value, there.id.value);
+  ++trajectory.id.value;
+  trajectory.name = std::filesystem::path(path).stem().string();
+  trajectory.source.path = std::filesystem::absolute(path).lexically_normal().string();
+  trajectory.track = std::move(track);
+  project.trajectories.push_back(std::move(trajectory));
+  return project.trajectories.back().id;
+}
 
 bool haveTimes(const std::vector<Frame*>& frames) {
   return frames.size() > 1 && frames.back()->timeSecs > frames.front()->timeSecs;
 }
 
+/// A video has a clock of its own, which need not be the trajectory's; a folder of pictures has none.
+bool isOfVideo(const std::vector<Frame*>& frames) {
+  return std::all_of(frames.begin(), frames.end(), [](const Frame* f) { return bool(f->video); });
+}
+
+/// Two clocks that never agree (one counts from 1970, the other from the video's start) are first laid start on start.
+void layStartOnStart(Trajectory& trajectory, const std::vector<Frame*>& frames, std::vector<std::string>& notes) {
+  const auto& samples = trajectory.track.samples();
+  const bool apart = frames.back()->timeSecs < samples.front().timeSecs || frames.front()->timeSecs > samples.back().timeSecs;
+  if (!apart) return;
+  trajectory.clockOffsetSecs = samples.front().timeSecs - frames.front()->timeSecs;
+  notes.push_back("The clock of " + trajectory.source.path + " is not the pictures': its start was laid on theirs. "
+                  "Estimate the clock offset, or set it");
+}
+
 /// True where the trajectory could be laid on the frames at all.
-bool matchTrajectory(const std::vector<Frame*>& frames, const CameraSet& set, SetCameras& cameras) {
-  if (set.pictures.size() == frames.size()) {
+bool matchTrajectory(Project& project, const std::vector<Frame*>& frames, const CameraSource& source, SetCameras& cameras,
+                     std::vector<std::string>& notes) {
+  const CameraSet& set = source.set;
+  PoseTrack track = trackOf(set);
+  const bool byOrder = set.pictures.size() == frames.size() && (!isOfVideo(frames) || track.empty());
+  if (!byOrder && (!haveTimes(frames) || track.empty())) return false;
+  const bool hasTrack = track.samples().size() > 1;
+  const TrajectoryId id = hasTrack ? addTrajectory(project, source.path, std::move(track)) : TrajectoryId{};
+  Trajectory* trajectory = project.findTrajectory(id);
+  for (Frame* frame : frames)
+    if (!frame->cameraFromWorld || frame->poseSource == PoseSource::None) frame->trajectory = id;
+  if (byOrder) {
     for (std::size_t i = 0; i < frames.size(); ++i) givePose(*frames[i], set.pictures[i], cameras, PoseSource::File);
     return true;
   }
-  if (!haveTimes(frames)) return false;
-  const Trajectory trajectory(set);
-  bool any = false;
-  for (Frame* frame : frames) {
-    if (frame->cameraFromWorld) continue;
-    frame->cameraFromWorld = trajectory.at(frame->timeSecs);
-    if (!frame->cameraFromWorld) continue;
-    frame->poseSource = PoseSource::Interpolated;
-    if (!frame->camera)
-      if (const auto camera = cameras.theOnlyOne()) frame->camera = *camera;
-    any = true;
-  }
-  return any;
+  if (!trajectory) return false;
+  layStartOnStart(*trajectory, frames, notes);
+  const PoseCount poses = poseFromTrajectory(project, id);
+  if (poses.posed > 0)
+    for (Frame* frame : frames)
+      if (!frame->camera)
+        if (const auto camera = cameras.theOnlyOne()) frame->camera = *camera;
+  if (poses.posed == 0) project.trajectories.pop_back();
+  return poses.posed > 0;
 }
 
 std::string count(std::size_t n, const char* one, const char* many) {
@@ -300,7 +306,7 @@ std::vector<std::string> matchPoses(Project& project, const std::vector<CameraSo
       if (left > 0)
         notes.push_back(count(left, "pose of ", "poses of ") + source.path + (left == 1 ? " has" : " have") +
                         " no picture here. Add the folder that holds them if they are wanted");
-    } else if (!matchTrajectory(frames, set, cameras)) {
+    } else if (!matchTrajectory(project, frames, source, cameras, notes)) {
       notes.push_back("The trajectory " + source.path + " could not be laid on the pictures: they have no times, and it has " +
                       count(set.pictures.size(), "pose", "poses") + " for " +
                       count(frames.size(), "picture", "pictures") +

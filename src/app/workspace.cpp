@@ -4,11 +4,10 @@
 #include "app/workspace.h"
 
 #include <algorithm>
-#include <deque>
 #include <unordered_set>
 
+#include "app/pose_clock.h"
 #include "app/scan_loading.h"
-#include "io/picture_file.h"
 #include "io/reader_registry.h"
 
 namespace alidade {
@@ -81,70 +80,6 @@ void dropSamples(LoadedData& data, const Project& project) {
   });
 }
 
-/// Decoders of videos stay open: seeking forward one frame is then one decode.
-struct PictureCache::Impl {
-  struct Entry {
-    std::string key;
-    std::shared_ptr<const ColourImage> image;
-  };
-  std::mutex mutex;
-  std::size_t capacity;
-  std::deque<Entry> recent;
-  std::map<std::string, std::unique_ptr<PictureSource>> videos;
-
-  std::shared_ptr<const ColourImage> find(const std::string& key) const {
-    const auto it = std::find_if(recent.begin(), recent.end(), [&](const Entry& e) { return e.key == key; });
-    return it == recent.end() ? nullptr : it->image;
-  }
-
-  Result<ColourImage> decodeVideo(const std::string& path, std::int64_t index) {
-    auto& source = videos[path];
-    if (!source) {
-      const auto reader = ReaderRegistry::instance().findAs<PictureReader>(path);
-      if (!reader) return fail(reader.error());
-      auto opened = (*reader)->open(path);
-      if (!opened) return fail(opened.error());
-      source = std::move(*opened);
-    }
-    return source->picture(static_cast<std::size_t>(index));
-  }
-};
-
-PictureCache::PictureCache(std::size_t capacity) : m_impl(std::make_unique<Impl>()) {
-  m_impl->capacity = std::max<std::size_t>(1, capacity);
-}
-
-PictureCache::~PictureCache() = default;
-
-Result<std::shared_ptr<const ColourImage>> PictureCache::picture(const Project& project, const Frame& frame) {
-  std::string path = frame.image.path;
-  const bool fromVideo = static_cast<bool>(frame.video);
-  if (fromVideo) {
-    const auto video = std::find_if(project.videos.begin(), project.videos.end(),
-                                    [&](const Video& v) { return v.id == frame.video; });
-    if (video == project.videos.end())
-      return fail("Frame '" + frame.name + "' belongs to a video that the project does not hold", project.path);
-    path = video->source.path;
-  }
-  if (path.empty()) return fail("Frame '" + frame.name + "' has no picture", project.path, "Add its picture file");
-
-  const std::string key = path + '\n' + std::to_string(frame.videoFrame);
-  std::lock_guard lock(m_impl->mutex);
-  if (auto found = m_impl->find(key)) return found;
-  auto decoded = fromVideo ? m_impl->decodeVideo(path, frame.videoFrame) : readPicture(path);
-  if (!decoded) return fail(decoded.error());
-  auto image = std::make_shared<const ColourImage>(std::move(*decoded));
-  m_impl->recent.push_front({key, image});
-  if (m_impl->recent.size() > m_impl->capacity) m_impl->recent.pop_back();
-  return image;
-}
-
-void PictureCache::clear() {
-  std::lock_guard lock(m_impl->mutex);
-  m_impl->recent.clear();
-  m_impl->videos.clear();
-}
-
 namespace {
 
 DesignLayer layerOf(const Design& design, std::shared_ptr<const DesignModel> model, const SelectionState& selection) {
@@ -164,14 +99,15 @@ DesignLayer layerOf(const Design& design, std::shared_ptr<const DesignModel> mod
 }  // namespace
 
 Result<FrameDescription> describeFrame(const Project& project, const LoadedData& data, FrameId frameId,
-                                       std::shared_ptr<const ColourImage> image, const SelectionState& selection) {
+                                       std::shared_ptr<const ColourImage> image, const SelectionState& selection,
+                                       const std::optional<RigidTransform>& pose) {
   const Frame* frame = project.findFrame(frameId);
   if (!frame) return fail("The project holds no such frame", project.path);
   const CameraRecord* camera = project.findCamera(frame->camera);
   if (!camera)
     return fail("Frame '" + frame->name + "' has no camera", project.path,
                 "Add a calibration: a COLMAP model or an OpenCV calibration file");
-  if (!frame->cameraFromWorld)
+  if (!pose && !frame->cameraFromWorld)
     return fail("Frame '" + frame->name + "' has no pose", project.path,
                 "Add poses: a COLMAP model or a trajectory that covers this frame");
   if (image && (image->width() != camera->camera.width() || image->height() != camera->camera.height()))
@@ -182,7 +118,8 @@ Result<FrameDescription> describeFrame(const Project& project, const LoadedData&
 
   FrameDescription description;
   description.camera = camera->camera;
-  description.cameraFromWorld = *frame->cameraFromWorld;
+  description.cameraFromWorld = pose ? *pose : *frame->cameraFromWorld;
+  description.shutter = shutterOf(project, *frame);
   description.image = std::move(image);
   for (const Scan& scan : project.scans)
     if (const auto it = data.scans.find(scan.id); scan.visible && it != data.scans.end())
@@ -198,7 +135,7 @@ Result<FrameDescription> describeFrame(const Project& project, const LoadedData&
   description.selectedAnnotation = selection.annotation;
   for (const Observation& seen : project.observations) {
     if (seen.frame != frameId || !seen.enabled) continue;
-    if (const auto projected = camera->camera.project(description.cameraFromWorld * seen.world))
+    if (const auto projected = alidade::project(camera->camera, description.shutter, description.cameraFromWorld * seen.world))
       description.residuals.push_back({seen.pixel, *projected, seen.name});
   }
   description.display = project.display;

@@ -6,7 +6,7 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,12 +40,15 @@ void mergeInto(LoadedData& data, const LoadedData& part);
 /// Leaves out the samples of these scans whose whole never came.
 void dropSamples(LoadedData& data, const Project& project);
 
-/// Decodes frames, keeping the last few. Thread-safe.
+/// Decoded pictures, the last few kept, made on a thread of its own: whoever asks waits for it, and what is expected
+/// next is decoded while nobody waits. Thread-safe.
 class PictureCache {
  public:
   explicit PictureCache(std::size_t capacity = 8);
   ~PictureCache();
   Result<std::shared_ptr<const ColourImage>> picture(const Project& project, const Frame& frame);
+  /// Decodes these next, in this order, as far as the capacity goes; replaces what was expected before.
+  void expect(const Project& project, const std::vector<FrameId>& next);
   void clear();
 
  private:
@@ -62,9 +65,9 @@ struct SelectionState {
   friend bool operator==(const SelectionState&, const SelectionState&) = default;
 };
 
-/// The frame as plain data for the overlay. Error where the frame has no pose or no camera.
+/// The frame as plain data for the overlay. Error where the frame has no pose (`pose` stands in for it) or no camera.
 Result<FrameDescription> describeFrame(const Project& project, const LoadedData& data, FrameId frame,
-                                       std::shared_ptr<const ColourImage> image,
-                                       const SelectionState& selection = {});
+                                       std::shared_ptr<const ColourImage> image, const SelectionState& selection = {},
+                                       const std::optional<RigidTransform>& pose = {});
 
 }  // namespace alidade

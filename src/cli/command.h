@@ -61,6 +61,7 @@ CLI::Validator checkedBy(Parse parse, const std::string& name) {
 
 void addCalibrate(Verbs& verbs);
 void addClean(Verbs& verbs);
+void addClock(Verbs& verbs);
 void addConvert(Verbs& verbs);
 void addDemo(Verbs& verbs);
 void addIndex(Verbs& verbs);

@@ -12,14 +12,16 @@ void addDemo(Verbs& verbs) {
   struct Arguments {
     std::string folder;
     DemoOptions options;
-    bool gray = false;
+    bool gray = false, video = false;
+    double readoutMs = 0;
   };
   auto arguments = std::make_shared<Arguments>();
   CLI::App* command = verbs.add(
       "demo", "Make the sample inspection: site, scan, video, design, defects and their truth",
       [arguments](const Progress& progress) -> Result<Answer> {
         arguments->options.colour = !arguments->gray;
-        auto project = makeDemo(arguments->folder, arguments->options, progress);
+        arguments->options.readoutSecs = arguments->readoutMs / 1000;
+        auto project = makeDemo(arguments->folder, arguments->options, progress, arguments->video);
         if (!project) return fail(project.error());
         Answer answer;
         answer.json = {{"project", *project},
@@ -37,6 +39,10 @@ void addDemo(Verbs& verbs) {
   command->add_option("--seed", arguments->options.seed, "Same seed, same bytes")->capture_default_str();
   command->add_option("--width", arguments->options.width, "Width of a frame, pixels")->check(CLI::Range(16, 8192));
   command->add_option("--height", arguments->options.height, "Height of a frame, pixels")->check(CLI::Range(16, 8192));
+  command->add_flag("--video", arguments->video, "The project is of an H.264 video with a trajectory, not of pictures");
+  command->add_option("--clock-offset", arguments->options.clockOffsetSecs, "Trajectory's clock minus the video's, seconds");
+  command->add_option("--readout", arguments->readoutMs, "Milliseconds that the camera takes to read its rows (rolling shutter)")
+      ->check(CLI::Range(-60.0, 60.0));
   command->add_flag("--gray", arguments->gray, "A grayscale camera");
 }
 

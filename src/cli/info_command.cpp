@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -117,7 +118,20 @@ Result<Description> describe(const PictureReader& reader, const std::string& pat
   out.json = {{"kind", set->isVideo ? "video" : "pictures"}, {"pictures", set->pictures.size()}, {"width", set->width},
               {"height", set->height}, {"frames_per_second", set->framesPerSecond}, {"details", set->details}};
   out.text = fmt::format("  pictures  {}, {} × {} px\n", set->pictures.size(), set->width, set->height);
-  if (set->isVideo) out.text += fmt::format("  rate      {:.3f} Hz\n", set->framesPerSecond);
+  if (set->isVideo && !set->pictures.empty()) {
+    double shortest = std::numeric_limits<double>::infinity(), longest = 0;
+    for (std::size_t i = 1; i < set->pictures.size(); ++i) {
+      const double step = set->pictures[i].timeSecs - set->pictures[i - 1].timeSecs;
+      shortest = std::min(shortest, step), longest = std::max(longest, step);
+    }
+    const bool several = set->pictures.size() > 1;
+    out.json["duration_s"] = set->pictures.back().timeSecs - set->pictures.front().timeSecs;
+    out.json["shortest_step_s"] = several ? Json(shortest) : Json(nullptr);
+    out.json["longest_step_s"] = several ? Json(longest) : Json(nullptr);
+    out.text += fmt::format("  rate      {:.3f} Hz", set->framesPerSecond);
+    if (several && longest > 1.02 * shortest) out.text += fmt::format(", varying: steps of {:.1f} to {:.1f} ms", 1000 * shortest, 1000 * longest);
+    out.text += fmt::format("\n  length    {:.3f} s\n", set->pictures.back().timeSecs - set->pictures.front().timeSecs);
+  }
   return out;
 }
 

@@ -50,6 +50,7 @@ int main(int argc, char** argv) {
   cli::addLevels(verbs);
   cli::addNew(verbs);
   cli::addOverlay(verbs);
+  cli::addClock(verbs);
   cli::addRefine(verbs);
   cli::addProjectPoints(verbs);
   cli::addExportCameras(verbs);

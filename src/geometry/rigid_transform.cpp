@@ -65,11 +65,4 @@ double rotationAngleBetween(const RigidTransform& a, const RigidTransform& b) {
   return 2.0 * std::atan2(sine, std::abs(between.w));
 }
 
-RigidTransform interpolateCameraPose(const RigidTransform& cameraFromWorld0, const RigidTransform& cameraFromWorld1,
-                                     double t) {
-  const glm::dquat rotation = glm::slerp(cameraFromWorld0.rotation, cameraFromWorld1.rotation, t);
-  const glm::dvec3 centre = glm::mix(cameraFromWorld0.centre(), cameraFromWorld1.centre(), t);
-  return {rotation, -(rotation * centre)};
-}
-
 }  // namespace alidade

@@ -40,9 +40,4 @@ std::optional<glm::dquat> nearestRotation(const glm::dmat3& matrix, double toler
 /// Angle in radians between the two attitudes, in [0, pi].
 double rotationAngleBetween(const RigidTransform& a, const RigidTransform& b);
 
-/// Screw-free interpolation: slerp of the attitudes, straight line between the *centres* (the
-/// inverse translations), which is what a moving camera does. t in [0,1].
-RigidTransform interpolateCameraPose(const RigidTransform& cameraFromWorld0, const RigidTransform& cameraFromWorld1,
-                                     double t);
-
 }  // namespace alidade

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <string>
 
@@ -23,6 +24,24 @@ struct ScanAttributeRow {
 struct ScanStationRow {
   std::int64_t parent = 0;
   Station station;
+};
+/// The rolling shutter of the camera at position `parent`; those of a global shutter have no row.
+struct CameraShutterRow {
+  std::int64_t parent = 0;
+  double readoutSecs = 0;
+};
+struct VideoTimingRow {
+  std::int64_t parent = 0;
+  FrameTiming timing = FrameTiming::Container;
+};
+struct TrajectoryPoseRow {
+  std::int64_t parent = 0;
+  PoseSample sample;
+};
+/// The trajectory of the frame at position `parent`.
+struct FrameTrajectoryRow {
+  std::int64_t parent = 0;
+  TrajectoryId trajectory;
 };
 struct HiddenElementRow {
   std::int64_t parent = 0;
@@ -219,6 +238,47 @@ void visit(V& v, Video& video) {
   visitSource(v, {"source_path", "source_size", "source_hash"}, video.source);
   v("frames_per_second", video.framesPerSecond);
   v("frame_count", video.frameCount);
+}
+
+template <class V>
+void visit(V& v, CameraShutterRow& row) {
+  v("camera", row.parent);
+  v("readout_s", row.readoutSecs);
+  v.check(std::isfinite(row.readoutSecs), "readout_s", "is no time");
+}
+
+template <class V>
+void visit(V& v, VideoTimingRow& row) {
+  v("video", row.parent);
+  v.choice("timing", row.timing, {"container", "constant_rate", "table"});
+}
+
+template <class V>
+void visit(V& v, Trajectory& trajectory) {
+  v("id", trajectory.id);
+  v("name", trajectory.name);
+  visitSource(v, {"source_path", "source_size", "source_hash"}, trajectory.source);
+  v("clock_offset_s", trajectory.clockOffsetSecs);
+  v.check(std::isfinite(trajectory.clockOffsetSecs), "clock_offset_s", "is no time");
+  bool hasStd = trajectory.clockOffsetStdSecs.has_value();
+  double std = trajectory.clockOffsetStdSecs.value_or(0);
+  v("has_clock_offset_std", hasStd);
+  v("clock_offset_std_s", std);
+  trajectory.clockOffsetStdSecs = hasStd ? std::optional(std) : std::nullopt;
+}
+
+template <class V>
+void visit(V& v, TrajectoryPoseRow& row) {
+  v("trajectory", row.parent);
+  v("time_s", row.sample.timeSecs);
+  v.check(std::isfinite(row.sample.timeSecs), "time_s", "is no time");
+  visitPose(v, {"qw", "qx", "qy", "qz", "tx", "ty", "tz"}, row.sample.cameraFromWorld);
+}
+
+template <class V>
+void visit(V& v, FrameTrajectoryRow& row) {
+  v("frame", row.parent);
+  v("trajectory", row.trajectory);
 }
 
 template <class V>

@@ -30,6 +30,7 @@ void visitSources(P& project, const Visit& visit) {
   for (auto& scan : project.scans) visit(scan.source);
   for (auto& design : project.designs) visit(design.source);
   for (auto& video : project.videos) visit(video.source);
+  for (auto& trajectory : project.trajectories) visit(trajectory.source);
   for (auto& frame : project.frames) visit(frame.image);
 }
 

@@ -12,7 +12,7 @@ namespace alidade {
 extern const std::string_view kProjectSchema;
 
 /// Raise it with every change of the schema.
-inline constexpr std::uint32_t kProjectVersion = 2;
+inline constexpr std::uint32_t kProjectVersion = 3;
 
 /// SQLite's application_id: "ALID".
 inline constexpr std::uint32_t kProjectApplicationId = 0x414c4944;

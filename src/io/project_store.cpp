@@ -119,8 +119,31 @@ Result<void> writeDesigns(const ProjectDatabase& database, const Project& projec
 
 Result<void> writeCameras(const ProjectDatabase& database, const Project& project) {
   std::vector<CameraRow> cameras;
-  for (const auto& camera : project.cameras) cameras.push_back({camera.id, camera.name, camera.camera.intrinsics()});
-  return writeRows(database, "camera", cameras);
+  std::vector<CameraShutterRow> shutters;
+  for (std::size_t i = 0; i < project.cameras.size(); ++i) {
+    const CameraRecord& camera = project.cameras[i];
+    cameras.push_back({camera.id, camera.name, camera.camera.intrinsics()});
+    if (camera.readoutSecs != 0) shutters.push_back({std::int64_t(i), camera.readoutSecs});
+  }
+  return writeRows(database, "camera", cameras).and_then([&] { return writeRows(database, "camera_shutter", shutters); });
+}
+
+Result<void> writeVideos(const ProjectDatabase& database, const Project& project) {
+  std::vector<VideoTimingRow> timings;
+  for (std::size_t i = 0; i < project.videos.size(); ++i) timings.push_back({std::int64_t(i), project.videos[i].timing});
+  return writeRows(database, "video", project.videos).and_then([&] { return writeRows(database, "video_timing", timings); });
+}
+
+Result<void> writeTrajectories(const ProjectDatabase& database, const Project& project) {
+  std::vector<TrajectoryPoseRow> poses;
+  for (std::size_t i = 0; i < project.trajectories.size(); ++i)
+    for (const PoseSample& sample : project.trajectories[i].track.samples()) poses.push_back({std::int64_t(i), sample});
+  std::vector<FrameTrajectoryRow> served;
+  for (std::size_t i = 0; i < project.frames.size(); ++i)
+    if (project.frames[i].trajectory) served.push_back({std::int64_t(i), project.frames[i].trajectory});
+  return writeRows(database, "trajectory", project.trajectories)
+      .and_then([&] { return writeRows(database, "trajectory_pose", poses); })
+      .and_then([&] { return writeRows(database, "frame_trajectory", served); });
 }
 
 /// `project` with its paths already relative.
@@ -140,8 +163,9 @@ Result<void> writeAll(const ProjectDatabase& database, const Project& project) {
       .and_then([&] { return writeScans(database, project); })
       .and_then([&] { return writeDesigns(database, project); })
       .and_then([&] { return writeCameras(database, project); })
-      .and_then([&] { return writeRows(database, "video", project.videos); })
+      .and_then([&] { return writeVideos(database, project); })
       .and_then([&] { return writeRows(database, "frame", project.frames); })
+      .and_then([&] { return writeTrajectories(database, project); })
       .and_then([&] { return writeRows(database, "stake_point", project.stakePoints); })
       .and_then([&] { return writeRows(database, "control_point", project.controlPoints); })
       .and_then([&] { return writeRows(database, "observation", project.observations); })
@@ -182,7 +206,9 @@ Result<void> checkHeader(const std::string& path) {
 
 /// Tables that older versions did not write; what they hold keeps its defaults then.
 bool isOptional(const std::string& table) {
-  return table == "point_style";
+  static const std::set<std::string> later = {"point_style", "camera_shutter", "video_timing", "trajectory",
+                                              "trajectory_pose", "frame_trajectory"};
+  return later.contains(table);
 }
 
 /// A foreign hand may have put a view, a virtual or a computed table where a plain one is expected:
@@ -214,10 +240,18 @@ Result<void> checkTables(const ProjectDatabase& database, const std::string& pat
   return {};
 }
 
+bool hasTable(const ProjectDatabase& database, const std::string& table) {
+  QSqlQuery query = database.query();
+  query.prepare("SELECT 1 FROM main.sqlite_master WHERE type = 'table' AND rootpage > 0 AND name = ?");
+  query.addBindValue(QString::fromStdString(table));
+  return query.exec() && query.next();
+}
+
 /// Rows of a list that hangs on another: `add(parent, row)` for each, refused where the parent is not there.
 template <class Row, class Parent, class Add>
 Result<void> readChildren(const ProjectDatabase& database, const std::string& path, const std::string& table,
                           std::vector<Parent>& parents, Add&& add) {
+  if (isOptional(table) && !hasTable(database, table)) return {};
   auto rows = readRows<Row>(database, path, table);
   if (!rows) return fail(rows.error());
   for (Row& row : *rows) {
@@ -231,17 +265,11 @@ Result<void> readChildren(const ProjectDatabase& database, const std::string& pa
 template <class T>
 Result<void> readInto(const ProjectDatabase& database, const std::string& path, const std::string& table,
                       std::vector<T>& rows) {
+  if (isOptional(table) && !hasTable(database, table)) return {};
   auto read = readRows<T>(database, path, table);
   if (!read) return fail(read.error());
   rows = std::move(*read);
   return {};
-}
-
-bool hasTable(const ProjectDatabase& database, const std::string& table) {
-  QSqlQuery query = database.query();
-  query.prepare("SELECT 1 FROM main.sqlite_master WHERE type = 'table' AND rootpage > 0 AND name = ?");
-  query.addBindValue(QString::fromStdString(table));
-  return query.exec() && query.next();
 }
 
 Result<void> readHead(const ProjectDatabase& database, const std::string& path, Project& project) {
@@ -260,6 +288,23 @@ Result<void> readHead(const ProjectDatabase& database, const std::string& path, 
   if (styles->size() != 1)
     return fail("The project file is damaged: it must have one point style", path, "Open a backup of the project");
   project.display.points = styles->front();
+  return {};
+}
+
+Result<void> readTrajectories(const ProjectDatabase& database, const std::string& path, Project& project) {
+  std::vector<std::vector<PoseSample>> samples;
+  auto done = readInto(database, path, "trajectory", project.trajectories)
+      .and_then([&] {
+        samples.resize(project.trajectories.size());
+        return readChildren<TrajectoryPoseRow>(database, path, "trajectory_pose", samples,
+            [](std::vector<PoseSample>& list, TrajectoryPoseRow& row) { list.push_back(row.sample); });
+      })
+      .and_then([&] {
+        return readChildren<FrameTrajectoryRow>(database, path, "frame_trajectory", project.frames,
+            [](Frame& frame, FrameTrajectoryRow& row) { frame.trajectory = row.trajectory; });
+      });
+  if (!done) return done;
+  for (std::size_t i = 0; i < samples.size(); ++i) project.trajectories[i].track = PoseTrack(std::move(samples[i]));
   return {};
 }
 
@@ -282,7 +327,12 @@ Result<void> readAll(const ProjectDatabase& database, const std::string& path, P
       })
       .and_then([&] { return readInto(database, path, "camera", cameras); })
       .and_then([&] { return readInto(database, path, "video", project.videos); })
+      .and_then([&] {
+        return readChildren<VideoTimingRow>(database, path, "video_timing", project.videos,
+            [](Video& video, VideoTimingRow& row) { video.timing = row.timing; });
+      })
       .and_then([&] { return readInto(database, path, "frame", project.frames); })
+      .and_then([&] { return readTrajectories(database, path, project); })
       .and_then([&] { return readInto(database, path, "stake_point", project.stakePoints); })
       .and_then([&] { return readInto(database, path, "control_point", project.controlPoints); })
       .and_then([&] { return readInto(database, path, "observation", project.observations); })
@@ -293,7 +343,8 @@ Result<void> readAll(const ProjectDatabase& database, const std::string& path, P
     const bool blank = row.intrinsics.width == 0;
     project.cameras.push_back({row.id, std::move(row.name), blank ? Camera() : Camera(row.intrinsics)});
   }
-  return {};
+  return readChildren<CameraShutterRow>(database, path, "camera_shutter", project.cameras,
+      [](CameraRecord& camera, CameraShutterRow& row) { camera.readoutSecs = row.readoutSecs; });
 }
 
 }  // namespace

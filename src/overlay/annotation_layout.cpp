@@ -76,11 +76,11 @@ std::optional<AnnotationLayout> layOutAnnotation(const Annotation& annotation, c
                                                  const Camera& scaledCamera) {
   AnnotationLayout layout;
   if (annotation.anchor == AnnotationAnchor::World) {
-    const glm::dvec3 pInCamera = frame.cameraFromWorld * annotation.world;
-    const auto pixel = scaledCamera.project(pInCamera);
+    const auto pInCamera = pointAtItsRow(scaledCamera, frame.shutter, frame.cameraFromWorld * annotation.world);
+    const auto pixel = pInCamera ? scaledCamera.project(*pInCamera) : std::nullopt;
     if (!pixel) return std::nullopt;
     layout.tip = *pixel;
-    layout.depth = pInCamera.z;
+    layout.depth = pInCamera->z;
   } else {
     layout.tip = resultFromRaw(frame, scaledCamera, annotation.pixel);
   }

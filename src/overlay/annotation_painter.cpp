@@ -122,12 +122,12 @@ void Painter::toleranceCircle(const StakePoint& stake, const QColor& colour, con
   constexpr int corners = 48;
   QPainterPath path;
   double widest = 0;
-  const auto centre = m_camera.project(m_frame.cameraFromWorld * stake.position);
+  const auto centre = project(m_camera, m_frame.shutter, m_frame.cameraFromWorld * stake.position);
   for (int i = 0; i <= corners; ++i) {
     const double angle = 2 * std::numbers::pi * (i % corners) / corners;
     const glm::dvec3 rim =
         stake.position + stake.toleranceM * glm::dvec3(std::cos(angle), std::sin(angle), 0);
-    const auto pixel = m_camera.project(m_frame.cameraFromWorld * rim);
+    const auto pixel = project(m_camera, m_frame.shutter, m_frame.cameraFromWorld * rim);
     if (!pixel || !centre) return;
     widest = std::max(widest, glm::length(*pixel - *centre));
     if (i == 0)
@@ -196,12 +196,12 @@ void Painter::stakePoints() {
   };
   std::vector<Seen> seen;
   for (const StakePoint& stake : m_frame.stakePoints) {
-    const glm::dvec3 pInCamera = m_frame.cameraFromWorld * stake.position;
-    const auto pixel = m_camera.project(pInCamera);
+    const auto pInCamera = pointAtItsRow(m_camera, m_frame.shutter, m_frame.cameraFromWorld * stake.position);
+    const auto pixel = pInCamera ? m_camera.project(*pInCamera) : std::nullopt;
     if (!pixel || !m_camera.inPicture(*pixel)) continue;
     const auto& names = m_frame.selectedStakePoints;
     const bool selected = std::find(names.begin(), names.end(), stake.name) != names.end();
-    const Look look = lookOf(visibilityOf(*pixel, pInCamera.z), m_frame.display.hidden);
+    const Look look = lookOf(visibilityOf(*pixel, pInCamera->z), m_frame.display.hidden);
     if (look.drawn || selected) seen.push_back({&stake, *pixel, look, selected});
   }
   for (const Seen& s : seen) {

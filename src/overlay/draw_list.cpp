@@ -4,9 +4,11 @@
 #include "overlay/draw_list.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "base/parallel.h"
+#include "overlay/row_motion.h"
 #include "overlay/subdivision.h"
 
 namespace alidade {
@@ -87,7 +89,7 @@ bool isFinite(const glm::dvec3& p) {
 }
 
 Piece workOn(const Job& job, const DesignModel& model, const std::vector<glm::dvec3>& inCamera,
-             const LensError& lens, std::size_t budget) {
+             const LensError& lens, const RowMotion& rows, std::size_t budget) {
   Piece piece;
   const auto isUsable = [&](std::uint32_t vertex) {
     return vertex < inCamera.size() && isFinite(inCamera[vertex]);
@@ -99,7 +101,9 @@ Piece workOn(const Job& job, const DesignModel& model, const std::vector<glm::dv
     for (std::size_t i = 0; i < job.count; ++i) {
       const std::uint32_t* corner = model.triangles.data() + job.first + 3 * i;
       if (!isUsable(corner[0]) || !isUsable(corner[1]) || !isUsable(corner[2])) continue;
-      splitter.add({inCamera[corner[0]], inCamera[corner[1]], inCamera[corner[2]]}, job.element);
+      const std::array<glm::dvec3, 3> triangle{inCamera[corner[0]], inCamera[corner[1]], inCamera[corner[2]]};
+      if (rows.isOn()) rows.surface(triangle, [&](const auto& part) { splitter.add(part, job.element); });
+      else splitter.add(triangle, job.element);
     }
     piece.vertices = std::move(splitter.vertices);
     piece.indices = std::move(splitter.indices);
@@ -109,7 +113,10 @@ Piece workOn(const Job& job, const DesignModel& model, const std::vector<glm::dv
     for (std::size_t i = 0; i < job.count; ++i) {
       const auto& edge = model.edges[job.first + i];
       if (!isUsable(edge[0]) || !isUsable(edge[1])) continue;
-      splitter.add(inCamera[edge[0]], inCamera[edge[1]], job.element);
+      const glm::dvec3 &a = inCamera[edge[0]], &b = inCamera[edge[1]];
+      if (rows.isOn())
+        rows.edge(a, b, [&](const auto& from, const auto& to, double along) { splitter.add(from, to, job.element, along); });
+      else splitter.add(a, b, job.element);
     }
     piece.edges = std::move(splitter.vertices);
     piece.worstErrorPx = splitter.worstErrorPx;
@@ -185,6 +192,7 @@ DrawList buildDrawList(const FrameDescription& frame, const Camera& scaledCamera
   const LensError lens(scaledCamera, frame.display.subdivisionErrorPx);
   list.lensRadius = lens.radius();
   list.lensFolds = lens.foldsInPicture();
+  const RowMotion rows(scaledCamera, frame.shutter, frame.display.subdivisionErrorPx);
   if (!frame.display.designPass || !frame.cameraFromWorld.isFinite()) return list;
 
   std::vector<std::vector<glm::dvec3>> inCamera(frame.designs.size());
@@ -201,7 +209,7 @@ DrawList buildDrawList(const FrameDescription& frame, const Camera& scaledCamera
       // A fixed share of the budget a job: the list does not depend on how threads interleave.
       const double share = static_cast<double>(jobs[i].count) / static_cast<double>(total);
       const auto budget = static_cast<std::size_t>(share * static_cast<double>(kPieceBudget));
-      pieces[i] = workOn(jobs[i], *frame.designs[jobs[i].layer].model, inCamera[jobs[i].layer], lens, budget);
+      pieces[i] = workOn(jobs[i], *frame.designs[jobs[i].layer].model, inCamera[jobs[i].layer], lens, rows, budget);
     }
   });
   join(list, pieces);

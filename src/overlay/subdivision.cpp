@@ -222,7 +222,7 @@ void SurfaceSplitter::emit(const LensPoint& a, const LensPoint& b, const LensPoi
 
 EdgeSplitter::EdgeSplitter(const LensError& lens, std::size_t budget) : m_lens(lens), m_budget(budget) {}
 
-void EdgeSplitter::add(const glm::dvec3& a, const glm::dvec3& b, std::uint32_t element) {
+void EdgeSplitter::add(const glm::dvec3& a, const glm::dvec3& b, std::uint32_t element, double along) {
   const unsigned codeA = frustumCode(m_lens, a), codeB = frustumCode(m_lens, b);
   if (codeA & codeB) return;
   glm::dvec3 from = a, to = b;
@@ -235,6 +235,7 @@ void EdgeSplitter::add(const glm::dvec3& a, const glm::dvec3& b, std::uint32_t e
     (da < 0 ? from : to) = crossing;
   }
   m_start = a;
+  m_along = along;
   m_element = element;
   split(LensPoint::of(from), LensPoint::of(to), 0);
 }
@@ -261,7 +262,7 @@ void EdgeSplitter::split(const LensPoint& a, const LensPoint& b, int depth) {
   }
   if (m_lens.sagBound(a, b) > worstErrorPx) worstErrorPx = std::max(worstErrorPx, m_lens.sag(a, b).across);
   for (const LensPoint* end : {&a, &b})
-    vertices.push_back({glm::vec3(end->p), m_element, static_cast<float>(glm::length(end->p - m_start))});
+    vertices.push_back({glm::vec3(end->p), m_element, static_cast<float>(m_along + glm::length(end->p - m_start))});
 }
 
 }  // namespace alidade

@@ -44,7 +44,8 @@ class EdgeSplitter {
  public:
   EdgeSplitter(const LensError& lens, std::size_t budget);
 
-  void add(const glm::dvec3& a, const glm::dvec3& b, std::uint32_t element);
+  /// `along`: metres from the edge's start to `a`, for dashes.
+  void add(const glm::dvec3& a, const glm::dvec3& b, std::uint32_t element, double along = 0);
 
   std::vector<EdgeVertex> vertices;  ///< pairs
   double worstErrorPx = 0;
@@ -55,6 +56,7 @@ class EdgeSplitter {
   const LensError& m_lens;
   std::size_t m_budget;
   glm::dvec3 m_start{0};
+  double m_along = 0;
   std::uint32_t m_element = 0;
 };
 

@@ -52,27 +52,38 @@ Intrinsics demoIntrinsics(int width, int height) {
   return intrinsics;
 }
 
+struct Walk::Wanders {
+  explicit Wanders(std::uint32_t seed)
+      : swayX(seed, 401, 0.45), swayY(seed, 402, 0.45), swayZ(seed, 403, 0.6),
+        yaw(seed, 404, 0.35), pitch(seed, 405, 0.4), roll(seed, 406, 0.3) {}
+  Wander swayX, swayY, swayZ, yaw, pitch, roll;
+};
+
+Walk::Walk(std::uint32_t seed) : m_seed(seed), m_wanders(std::make_unique<const Wanders>(seed)) {}
+Walk::~Walk() = default;
+
+RigidTransform Walk::at(double seconds) const {
+  const Wanders& w = *m_wanders;
+  // Back and forth between the right and the left end of the front, 1.1 m/s on average.
+  const double along = std::cos(std::numbers::pi * (0.12 + seconds * 1.1 / 14.0));
+  const double x = 6.6 * along + 1.2, y = -12.2 - 0.9 * std::cos(1.3 * along) - 0.4 * along;
+  const double ground = groundHeight(m_seed, x, y);
+  const double step = 0.018 * std::sin(2.0 * std::numbers::pi * 1.85 * seconds);
+  const glm::dvec3 eye(x + 0.012 * w.swayX.at(seconds), y + 0.012 * w.swayY.at(seconds),
+                       -0.40 + 0.5 * (ground + 0.40) + 1.66 + step + 0.008 * w.swayZ.at(seconds));
+  const glm::dvec3 target(0.38 * x + 0.5 + 0.10 * w.yaw.at(seconds), 0.0, 1.35 + 0.08 * w.pitch.at(seconds));
+  RigidTransform pose = RigidTransform::cameraLookingAt(eye, target);
+  const glm::dquat tilt =
+      glm::angleAxis(radiansFromDegrees(0.9 * w.roll.at(seconds) + 0.4), glm::dvec3(0, 0, 1));
+  pose.rotation = glm::normalize(tilt * pose.rotation);
+  pose.translation = -(pose.rotation * eye);
+  return pose;
+}
+
 std::vector<RigidTransform> walkPast(int frames, std::uint32_t seed) {
-  const Wander swayX(seed, 401, 0.45), swayY(seed, 402, 0.45), swayZ(seed, 403, 0.6);
-  const Wander yaw(seed, 404, 0.35), pitch(seed, 405, 0.4), roll(seed, 406, 0.3);
+  const Walk walk(seed);
   std::vector<RigidTransform> poses;
-  for (int i = 0; i < frames; ++i) {
-    const double seconds = i / kFramesPerSecond;
-    // Back and forth between the right and the left end of the front, 1.1 m/s on average.
-    const double along = std::cos(std::numbers::pi * (0.12 + seconds * 1.1 / 14.0));
-    const double x = 6.6 * along + 1.2, y = -12.2 - 0.9 * std::cos(1.3 * along) - 0.4 * along;
-    const double ground = groundHeight(seed, x, y);
-    const double step = 0.018 * std::sin(2.0 * std::numbers::pi * 1.85 * seconds);
-    const glm::dvec3 eye(x + 0.012 * swayX.at(seconds), y + 0.012 * swayY.at(seconds),
-                         -0.40 + 0.5 * (ground + 0.40) + 1.66 + step + 0.008 * swayZ.at(seconds));
-    const glm::dvec3 target(0.38 * x + 0.5 + 0.10 * yaw.at(seconds), 0.0, 1.35 + 0.08 * pitch.at(seconds));
-    RigidTransform pose = RigidTransform::cameraLookingAt(eye, target);
-    const glm::dquat tilt =
-        glm::angleAxis(radiansFromDegrees(0.9 * roll.at(seconds) + 0.4), glm::dvec3(0, 0, 1));
-    pose.rotation = glm::normalize(tilt * pose.rotation);
-    pose.translation = -(pose.rotation * eye);
-    poses.push_back(pose);
-  }
+  for (int i = 0; i < frames; ++i) poses.push_back(walk.at(i / kFramesPerSecond));
   return poses;
 }
 

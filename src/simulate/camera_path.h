@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "camera/camera.h"
@@ -18,8 +19,21 @@ constexpr double kFramesPerSecond = 15.0;
 /// the picture's width.
 Intrinsics demoIntrinsics(int width, int height);
 
-/// A person who walks along the building's front with the camera in hand: cameraFromSite of each frame. The
-/// walk takes the same way whatever the number of frames; long ones turn back and forth.
+/// A person who walks along the building's front with the camera in hand, back and forth.
+class Walk {
+ public:
+  explicit Walk(std::uint32_t seed);
+  ~Walk();
+  /// cameraFromSite.
+  RigidTransform at(double seconds) const;
+
+ private:
+  struct Wanders;
+  std::uint32_t m_seed;
+  std::unique_ptr<const Wanders> m_wanders;
+};
+
+/// Its pose at each frame: the same way whatever the number of frames.
 std::vector<RigidTransform> walkPast(int frames, std::uint32_t seed);
 
 /// Poses that are off by about 2 cm and 0.2 degrees, as a tracker gives them.

@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "camera/rolling_shutter.h"
 #include "simulate/camera_path.h"
 #include "simulate/design_writer.h"
 #include "simulate/frame_renderer.h"
@@ -27,6 +28,7 @@ namespace {
 constexpr double kObservationNoisePx = 0.3;
 /// Depth and visibility are kept of about this many frames at most.
 constexpr int kTruthFrames = 50;
+constexpr double kPosesPerSecond = 60, kTrackedAround = 0.5;
 
 /// Runs the steps of one site, each after the other, and remembers what they share.
 class DemoWriter {
@@ -39,6 +41,7 @@ class DemoWriter {
     m_demo.cameras = folder + "/sparse";
     m_demo.perturbedCameras = folder + "/sparse_perturbed";
     m_demo.trajectory = folder + "/trajectory.txt";
+    m_demo.calibration = folder + "/camera.yml";
     m_demo.design = folder + "/design.ifc";
     m_demo.designMesh = folder + "/design.obj";
     m_demo.stakePoints = folder + "/stake.csv";
@@ -105,12 +108,34 @@ class DemoWriter {
     const auto wrong = perturbed(m_truth.cameraFromWorld, m_options.seed);
     if (auto written = writeColmapModel(m_demo.perturbedCameras, m_truth.intrinsics, wrong); !written)
       return written;
-    if (auto written = writeTrajectory(m_demo.trajectory, m_truth.cameraFromWorld); !written) return written;
+    if (auto written = writeTracked(siteFromWorld); !written) return written;
+    if (auto written = writeCalibration(m_demo.calibration, m_truth.intrinsics); !written) return written;
     if (!m_cameraFromSite.empty())
       m_truth.controlInFirstFrame =
           seenControlPoints(m_site, built, Camera(m_truth.intrinsics), m_cameraFromSite.front());
     return writeObservations(m_demo.observations, m_site, m_truth.controlInFirstFrame, kObservationNoisePx,
                              m_options.seed);
+  }
+
+  /// What a tracker gives: more poses than frames, from half a second before the first to half a second after the last.
+  Result<void> writeTracked(const RigidTransform& siteFromWorld) {
+    const Walk walk(m_options.seed);
+    std::vector<RigidTransform> poses;
+    const double end = (m_options.frames - 1) / kFramesPerSecond + kTrackedAround;
+    for (int i = 0; i / kPosesPerSecond <= end + kTrackedAround; ++i)
+      poses.push_back(walk.at(i / kPosesPerSecond - kTrackedAround) * siteFromWorld);
+    return writeTrajectory(m_demo.trajectory, poses, kPosesPerSecond, m_options.clockOffsetSecs - kTrackedAround);
+  }
+
+  /// cameraFromSite of one frame, or of each of its rows.
+  std::vector<RigidTransform> posesOf(int frame) const {
+    if (m_options.readoutSecs == 0) return {m_cameraFromSite[frame]};
+    const Walk walk(m_options.seed);
+    const RollingShutter shutter{m_options.readoutSecs, {}};
+    std::vector<RigidTransform> rows;
+    for (int y = 0; y < m_options.height; ++y)
+      rows.push_back(walk.at(frame / kFramesPerSecond + shutter.secsAtRow(y, m_options.height)));
+    return rows;
   }
 
   Result<void> writeVideo(const RayScene& built, const RayScene& design, const Lighting& lighting) {
@@ -122,7 +147,7 @@ class DemoWriter {
       progress.report(static_cast<double>(frame) / m_options.frames,
                       fmt::format("Filming frame {} of {}", frame + 1, m_options.frames));
       FrameTruth truth;
-      const ColourImage picture = renderer.render(m_cameraFromSite[frame], frame, truth);
+      const ColourImage picture = renderer.render(posesOf(frame), frame, truth);
       if (auto written = writePng(m_demo.images + "/" + frameFileName(frame), picture, m_options.colour);
           !written)
         return written;
@@ -154,6 +179,8 @@ Result<void> DemoOptions::validate() const {
   if (width < 16 || height < 16 || width > 8192 || height > 8192)
     return wrong(fmt::format("The video cannot be {} by {} pixels", width, height),
                  "Ask for 16 to 8192 pixels a side");
+  if (!std::isfinite(clockOffsetSecs) || std::abs(clockOffsetSecs) > 1e10 || !(std::abs(readoutSecs) <= 0.06))
+    return wrong("The camera's clock or shutter is none", "Give a clock offset in seconds and a read-out of at most 0.06 s");
   for (int axis = 0; axis < 3; ++axis)
     if (!std::isfinite(siteOrigin[axis]) || std::abs(siteOrigin[axis]) > 2e7)
       return wrong("The site's origin is no place on a map grid", "Give coordinates within 20 000 km");

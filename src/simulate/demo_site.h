@@ -21,6 +21,8 @@ struct DemoOptions {
   bool colour = true;                                      ///< false: a grayscale camera
   glm::dvec3 siteOrigin{2'683'500.0, 1'247'800.0, 412.0};  ///< Swiss LV95-like; world metres
   bool truth = true;                                       ///< write truth/ beside it
+  double clockOffsetSecs = 0;  ///< of the trajectory's clock: pose clock minus picture clock
+  double readoutSecs = 0;      ///< of a rolling shutter; a frame's time is that of its middle row
 
   Result<void> validate() const;
 };
@@ -37,7 +39,8 @@ struct DemoSite {
   std::string truth;             ///< folder; see writeDemoSite
   std::string stations;          ///< JSON: worldFromScanner and grid of each scanner station
   std::string perturbedCameras;  ///< COLMAP text model with poses off by about 2 cm and 0.2 degrees
-  std::string trajectory;        ///< TUM: the exact poses, 15 Hz
+  std::string trajectory;        ///< TUM: the exact poses at 60 Hz, on a clock of their own (DemoOptions::clockOffsetSecs)
+  std::string calibration;       ///< OpenCV YAML: the lens
   std::string observations;      ///< CSV: control points in frame 0, with 0.3 px noise
   std::uint64_t pointCount = 0;
   int frameCount = 0;

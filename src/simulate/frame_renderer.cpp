@@ -72,12 +72,13 @@ FrameRenderer::Sample FrameRenderer::trace(const glm::dvec3& origin, const glm::
   return sample;
 }
 
-void FrameRenderer::traceCentres(const RigidTransform& siteFromCamera, Image<Sample>& samples,
+void FrameRenderer::traceCentres(const std::vector<RigidTransform>& siteFromCamera, Image<Sample>& samples,
                                  FrameTruth& truth) const {
-  const glm::dmat3 rotation = siteFromCamera.rotationMatrix();
-  const glm::dvec3 origin = siteFromCamera.translation;
   parallelFor(static_cast<std::size_t>(samples.height()), 4, [&](std::size_t first, std::size_t last, int) {
-    for (auto y = static_cast<int>(first); y < static_cast<int>(last); ++y)
+    for (auto y = static_cast<int>(first); y < static_cast<int>(last); ++y) {
+      const RigidTransform& pose = siteFromCamera[siteFromCamera.size() > 1 ? static_cast<std::size_t>(y) : 0];
+      const glm::dmat3 rotation = pose.rotationMatrix();
+      const glm::dvec3 origin = pose.translation;
       for (int x = 0; x < samples.width(); ++x) {
         const glm::dvec2 centre = m_centres.at(x, y);
         if (!(centre.x == centre.x)) continue;
@@ -89,6 +90,7 @@ void FrameRenderer::traceCentres(const RigidTransform& siteFromCamera, Image<Sam
         truth.designDepth.at(x, y) = static_cast<float>(designed.distance);
         truth.visibility.at(x, y) = sample.depth < designed.distance - kHiddenTolerance ? 2 : 1;
       }
+    }
   });
 }
 
@@ -145,32 +147,35 @@ Rgba8 FrameRenderer::develop(const glm::vec3& radiance, int x, int y, int frame)
           static_cast<std::uint8_t>(shown.b), 255};
 }
 
-ColourImage FrameRenderer::render(const RigidTransform& cameraFromSite, int frame, FrameTruth& truth) const {
+ColourImage FrameRenderer::render(const std::vector<RigidTransform>& cameraFromSite, int frame, FrameTruth& truth) const {
   const int width = m_camera.width(), height = m_camera.height();
   const auto infinity = static_cast<float>(kInfinity);
   truth = {DepthImage(width, height, infinity), DepthImage(width, height, infinity),
            Image<std::uint8_t>(width, height, 0)};
-  const RigidTransform siteFromCamera = cameraFromSite.inverse();
+  std::vector<RigidTransform> siteFromCamera;
+  for (const RigidTransform& pose : cameraFromSite) siteFromCamera.push_back(pose.inverse());
   Image<Sample> samples(width, height);
   traceCentres(siteFromCamera, samples, truth);
   const Image<std::uint8_t> edges = findEdges(samples);
-  const glm::dmat3 rotation = siteFromCamera.rotationMatrix();
   ColourImage picture(width, height);
   parallelFor(static_cast<std::size_t>(height), 4, [&](std::size_t first, std::size_t last, int) {
     // The first two lie across from each other, so that two of them are even as well.
     static constexpr double offsets[4][2] = {
         {-0.375, -0.125}, {0.375, 0.125}, {0.125, -0.375}, {-0.125, 0.375}};
-    for (auto y = static_cast<int>(first); y < static_cast<int>(last); ++y)
+    for (auto y = static_cast<int>(first); y < static_cast<int>(last); ++y) {
+      const RigidTransform& pose = siteFromCamera[siteFromCamera.size() > 1 ? static_cast<std::size_t>(y) : 0];
+      const glm::dmat3 rotation = pose.rotationMatrix();
       for (int x = 0; x < width; ++x) {
         glm::vec3 radiance = samples.at(x, y).radiance;
         const int extra = edges.at(x, y);
         for (int i = 0; i < extra; ++i) {
           const glm::dvec3 direction = directionAt(x + offsets[i][0], y + offsets[i][1]);
-          radiance += trace(siteFromCamera.translation, rotation, direction).radiance;
+          radiance += trace(pose.translation, rotation, direction).radiance;
         }
         radiance /= static_cast<float>(1 + extra);
         picture.at(x, y) = develop(radiance, x, y, frame);
       }
+    }
   });
   return picture;
 }

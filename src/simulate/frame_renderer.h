@@ -31,13 +31,14 @@ class FrameRenderer {
   FrameRenderer(const Camera& camera, const RayScene& asBuilt, const RayScene& design,
                 const Lighting& lighting, std::uint32_t seed, bool colour);
 
-  ColourImage render(const RigidTransform& cameraFromSite, int frame, FrameTruth& truth) const;
+  /// `cameraFromSite`: one pose, or one for each row of a rolling shutter.
+  ColourImage render(const std::vector<RigidTransform>& cameraFromSite, int frame, FrameTruth& truth) const;
 
  private:
   struct Sample;
 
   Sample trace(const glm::dvec3& origin, const glm::dmat3& siteFromCamera, const glm::dvec3& direction) const;
-  void traceCentres(const RigidTransform& siteFromCamera, Image<Sample>& samples, FrameTruth& truth) const;
+  void traceCentres(const std::vector<RigidTransform>& siteFromCamera, Image<Sample>& samples, FrameTruth& truth) const;
   /// How many more rays each pixel wants: 4 on edges of things and shadows, 2 on strong texture.
   Image<std::uint8_t> findEdges(const Image<Sample>& samples) const;
   Rgba8 develop(const glm::vec3& radiance, int x, int y, int frame) const;

@@ -38,16 +38,27 @@ Result<void> writeColmapModel(const std::string& folder, const Intrinsics& in,
   return writeWholeFile(folder + "/points3D.txt", "# 3D point list with one line of data per point:\n");
 }
 
-Result<void> writeTrajectory(const std::string& path, const std::vector<RigidTransform>& cameraFromWorld) {
+Result<void> writeTrajectory(const std::string& path, const std::vector<RigidTransform>& cameraFromWorld,
+                             double posesPerSecond, double startSecs) {
   std::string text = "# timestamp tx ty tz qx qy qz qw\n";
   for (std::size_t i = 0; i < cameraFromWorld.size(); ++i) {
     const RigidTransform pose = cameraFromWorld[i].inverse();
     const auto& q = pose.rotation;
     const auto& t = pose.translation;
     text += fmt::format("{:.9f} {:.10f} {:.10f} {:.10f} {:.17g} {:.17g} {:.17g} {:.17g}\n",
-                        static_cast<double>(i) / kFramesPerSecond, t.x, t.y, t.z, q.x, q.y, q.z, q.w);
+                        startSecs + static_cast<double>(i) / posesPerSecond, t.x, t.y, t.z, q.x, q.y, q.z, q.w);
   }
   return writeWholeFile(path, text);
+}
+
+Result<void> writeCalibration(const std::string& path, const Intrinsics& in) {
+  const auto matrix = [](const char* name, int rows, int columns, const std::string& data) {
+    return fmt::format("{}: !!opencv-matrix\n   rows: {}\n   cols: {}\n   dt: d\n   data: [ {} ]\n", name, rows, columns, data);
+  };
+  const auto& d = in.distortion;
+  return writeWholeFile(path, "%YAML:1.0\n---\n" + fmt::format("image_width: {}\nimage_height: {}\n", in.width, in.height) +
+                                  matrix("camera_matrix", 3, 3, fmt::format("{}, 0., {}, 0., {}, {}, 0., 0., 1.", in.fx, in.cx, in.fy, in.cy)) +
+                                  matrix("distortion_coefficients", 1, 5, fmt::format("{}, {}, {}, {}, {}", d.k[0], d.k[1], d.p1, d.p2, d.k[2])));
 }
 
 }  // namespace alidade

@@ -20,7 +20,11 @@ std::string frameFileName(int frame);
 Result<void> writeColmapModel(const std::string& folder, const Intrinsics& intrinsics,
                               const std::vector<RigidTransform>& cameraFromWorld);
 
-/// TUM trajectory: `time tx ty tz qx qy qz qw`, camera to world, at 15 Hz from 0.
-Result<void> writeTrajectory(const std::string& path, const std::vector<RigidTransform>& cameraFromWorld);
+/// TUM trajectory: `time tx ty tz qx qy qz qw`, camera to world, from `startSecs`.
+Result<void> writeTrajectory(const std::string& path, const std::vector<RigidTransform>& cameraFromWorld,
+                             double posesPerSecond, double startSecs);
+
+/// The lens as OpenCV's FileStorage keeps it: image_width, image_height, camera_matrix, distortion_coefficients (five).
+Result<void> writeCalibration(const std::string& path, const Intrinsics& intrinsics);
 
 }  // namespace alidade

@@ -11,6 +11,7 @@ using ScanId = Id<struct ScanTag>;
 using CameraId = Id<struct CameraTag>;
 using FrameId = Id<struct FrameTag>;
 using VideoId = Id<struct VideoTag>;
+using TrajectoryId = Id<struct TrajectoryTag>;
 using DesignId = Id<struct DesignTag>;
 using AnnotationId = Id<struct AnnotationTag>;
 using ObservationId = Id<struct ObservationTag>;

@@ -31,6 +31,20 @@ const CameraRecord* Project::findCamera(CameraId id) const {
   return it == cameras.end() ? nullptr : &*it;
 }
 
+const Video* Project::findVideo(VideoId id) const {
+  const auto it = std::find_if(videos.begin(), videos.end(), [&](const Video& v) { return v.id == id; });
+  return it == videos.end() ? nullptr : &*it;
+}
+
+const Trajectory* Project::findTrajectory(TrajectoryId id) const {
+  const auto it = std::find_if(trajectories.begin(), trajectories.end(), [&](const Trajectory& t) { return t.id == id; });
+  return it == trajectories.end() ? nullptr : &*it;
+}
+
+Trajectory* Project::findTrajectory(TrajectoryId id) {
+  return const_cast<Trajectory*>(std::as_const(*this).findTrajectory(id));
+}
+
 Result<FrameId> Project::frameByNameOrIndex(const std::string& text) const {
   for (const Frame& frame : frames)
     if (frame.name == text) return frame.id;

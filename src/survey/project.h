@@ -16,6 +16,7 @@
 #include "survey/display_settings.h"
 #include "survey/ids.h"
 #include "survey/point_batch.h"
+#include "survey/trajectory.h"
 
 namespace alidade {
 
@@ -46,7 +47,11 @@ struct CameraRecord {
   CameraId id;
   std::string name;
   Camera camera;
+  double readoutSecs = 0;  ///< rolling shutter, see camera/rolling_shutter.h; 0: all rows at once
 };
+
+/// Where a video's frames have their times from.
+enum class FrameTiming { Container, ConstantRate, Table };
 
 struct Video {
   VideoId id;
@@ -54,6 +59,18 @@ struct Video {
   SourceFile source;
   double framesPerSecond = 0;
   std::int64_t frameCount = 0;
+  FrameTiming timing = FrameTiming::Container;
+};
+
+/// A camera's poses over time, and how their clock stands to the pictures': a frame of time t has the pose at
+/// t + clockOffsetSecs.
+struct Trajectory {
+  TrajectoryId id;
+  std::string name;
+  SourceFile source;
+  PoseTrack track;
+  double clockOffsetSecs = 0;
+  std::optional<double> clockOffsetStdSecs;  ///< where it was estimated
 };
 
 /// Where a frame's pose comes from, in the words shown on screen.
@@ -77,6 +94,8 @@ struct Frame {
   SourceFile image;             ///< a picture file; empty where the frame is of a video
   VideoId video;
   std::int64_t videoFrame = 0;  ///< index in the video, from 0
+
+  TrajectoryId trajectory;      ///< that its pose is interpolated on, and its velocity taken from
 
   std::optional<RigidTransform> cameraFromWorld;
   std::optional<RigidTransform> originalCameraFromWorld;  ///< as imported, once a refinement replaced it
@@ -146,6 +165,7 @@ struct Project {
   std::vector<Design> designs;
   std::vector<CameraRecord> cameras;
   std::vector<Video> videos;
+  std::vector<Trajectory> trajectories;
   std::vector<Frame> frames;  ///< in time order
   std::vector<StakePoint> stakePoints;
   std::vector<ControlPoint> controlPoints;
@@ -157,6 +177,9 @@ struct Project {
   const Frame* findFrame(FrameId id) const;
   Frame* findFrame(FrameId id);
   const CameraRecord* findCamera(CameraId id) const;
+  const Video* findVideo(VideoId id) const;
+  const Trajectory* findTrajectory(TrajectoryId id) const;
+  Trajectory* findTrajectory(TrajectoryId id);
   /// By name ("101_0367_0007.JPG", with or without its ending) or by index from 0 ("12").
   Result<FrameId> frameByNameOrIndex(const std::string& text) const;
 };

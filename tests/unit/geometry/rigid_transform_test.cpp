@@ -26,14 +26,6 @@ TEST(RigidTransform, TheInverseUndoesIt) {
   EXPECT_LT(glm::length(a.centre() - glm::dvec3(100600, 196250, 80)), 1e-9);
 }
 
-TEST(RigidTransform, AnInterpolatedCameraMovesOnTheStraightLine) {
-  const auto a = RigidTransform::cameraLookingAt({0, 0, 0}, {0, 10, 0});
-  const auto b = RigidTransform::cameraLookingAt({2, 0, 0}, {12, 0, 0});
-  const auto middle = interpolateCameraPose(a, b, 0.5);
-  EXPECT_LT(glm::length(middle.centre() - glm::dvec3(1, 0, 0)), 1e-12);
-  EXPECT_NEAR(rotationAngleBetween(a, middle), rotationAngleBetween(middle, b), 1e-12);
-}
-
 TEST(RigidTransform, AMatrixFromAFileIsMadeARotationOrRefused) {
   const glm::dmat3 exact = glm::mat3_cast(glm::angleAxis(0.7, glm::normalize(glm::dvec3(1, 2, -3))));
   const auto again = nearestRotation(exact);

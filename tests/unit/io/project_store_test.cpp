@@ -74,8 +74,17 @@ std::string printed(Project project) {
   for (CameraRecord& camera : project.cameras) {
     CameraRow row{camera.id, camera.name, camera.camera.intrinsics()};
     visit(p, row);
+    p("readout", camera.readoutSecs);
   }
   p.list("videos", project.videos);
+  for (Video& video : project.videos) p.choice("timing", video.timing, {});
+  p.list("trajectories", project.trajectories);
+  for (Trajectory& trajectory : project.trajectories)
+    for (const PoseSample& sample : trajectory.track.samples()) {
+      TrajectoryPoseRow row{0, sample};
+      visit(p, row);
+    }
+  for (Frame& frame : project.frames) p("trajectory", frame.trajectory);
   p.list("frames", project.frames);
   p.list("stakePoints", project.stakePoints);
   p.list("controlPoints", project.controlPoints);
@@ -150,6 +159,13 @@ Project fullProject(const TestFolder& folder) {
   project.cameras = {{CameraId{4}, "drone", Camera(lens)}, {CameraId{5}, "none", Camera()}, {CameraId{6}, "skewed", Camera(skewed)}};
   project.videos.resize(2);
   for (auto& video : project.videos) visit(fill, video), video.source.path = folder / "v.mp4";
+  project.videos[1].timing = FrameTiming::Table;
+  project.cameras[2].readoutSecs = 0.0123456789;
+  project.trajectories.resize(2);
+  for (auto& trajectory : project.trajectories) visit(fill, trajectory), trajectory.source.path = folder / "t.txt";
+  project.trajectories[0].clockOffsetStdSecs.reset();
+  project.trajectories[1].clockOffsetStdSecs = 1.25e-4;
+  project.trajectories[1].track = PoseTrack({{1.7e9 + 0.1, somePose(0.1)}, {1.7e9 + 0.2, somePose(0.2)}});
   project.frames.resize(3);
   for (auto& frame : project.frames) {
     visit(fill, frame);
@@ -159,6 +175,7 @@ Project fullProject(const TestFolder& folder) {
     frame.quality.reset();
   }
   project.frames[0].cameraFromWorld = somePose(0.5);
+  project.frames[2].trajectory = project.trajectories[1].id;
   project.frames[1].cameraFromWorld = somePose(0.7);
   project.frames[1].originalCameraFromWorld = somePose(0.9);
   project.frames[1].quality = PoseQuality{0.3, 1.1, {1e-3, 2e-3, 3e-3}, {1e-6, 0, -0.0}, 20};
@@ -322,6 +339,20 @@ TEST(ProjectStore, ReadsAProjectOfVersionOne) {
   EXPECT_EQ(loaded->display.points, PointStyle());
 }
 
+TEST(ProjectStore, ReadsAProjectOfVersionTwo) {
+  const TestFolder folder;
+  const std::string path = savedProject(folder);
+  for (const char* table : {"camera_shutter", "video_timing", "trajectory", "trajectory_pose", "frame_trajectory"})
+    tamper(path, QStringLiteral("DROP TABLE %1").arg(table));
+  tamper(path, "PRAGMA user_version = 2");
+  const auto loaded = loadProject(path);
+  ASSERT_TRUE(loaded) << loaded.error().text();
+  EXPECT_TRUE(loaded->trajectories.empty());
+  EXPECT_EQ(loaded->cameras[2].readoutSecs, 0);
+  EXPECT_FALSE(loaded->frames[2].trajectory);
+  EXPECT_TRUE(loaded->frames[1].cameraFromWorld) << "poses that were there stay";
+}
+
 TEST(ProjectStore, RefusesEveryTruncation) {
   const TestFolder folder;
   const std::string whole = TestFolder::read(savedProject(folder));
@@ -356,6 +387,12 @@ TEST(ProjectStore, RefusesWrongValuesByTableAndColumn) {
       {"DELETE FROM point_style", "one point style"},
       {"UPDATE point_style SET hidden_classes = '7 256'", "hidden_classes"},
       {"DROP TABLE finding", "finding"},
+      {"UPDATE trajectory_pose SET trajectory = 2", "belongs to nothing"},
+      {"UPDATE trajectory_pose SET time_s = NULL", "time_s"},
+      {"UPDATE trajectory SET clock_offset_s = 'late'", "clock_offset_s"},
+      {"UPDATE camera_shutter SET readout_s = 9e999", "readout_s"},
+      {"UPDATE video_timing SET timing = 'guessed'", "timing"},
+      {"UPDATE frame_trajectory SET frame = -1", "belongs to nothing"},
       {"ALTER TABLE video ADD COLUMN bomb GENERATED ALWAYS AS (zeroblob(1000000000))", "video"},
   };
   for (const auto& [statement, word] : cases) {

@@ -1,0 +1,62 @@
+// SPDX-FileCopyrightText: 2026 the Alidade authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <glm/glm.hpp>
+
+#include "base/error.h"
+#include "base/progress.h"
+#include "camera/camera.h"
+#include "survey/trajectory.h"
+
+namespace alidade {
+
+/// Places in two pictures that show the same thing: pixels, OpenCV's origin.
+struct TrackedPair {
+  double firstSecs = 0, secondSecs = 0;  ///< on the pictures' clock
+  std::vector<std::pair<glm::dvec2, glm::dvec2>> tracks;
+};
+
+struct ClockOffsetOptions {
+  double startSecs = 0;    ///< middle of the range that is searched
+  double rangeSecs = 1.0;  ///< to either side
+  double stepSecs = 0.01;  ///< of the search; what the camera does must be smooth over it
+  double nearestM = 0.3;   ///< nothing in the pictures is nearer, depth in metres
+  double readoutSecs = 0;  ///< of the rolling shutter, see camera/rolling_shutter.h
+  double scalePx = 1.0;    ///< of the robust loss (Cauchy)
+  double worstStdSecs = 0.02;  ///< beyond it the offset counts as unknown
+  Result<void> validate() const;
+};
+
+/// Pose clock minus picture clock, as Trajectory::clockOffsetSecs.
+struct ClockOffset {
+  bool found = false;
+  std::string reason;      ///< where it was not found: why, and what to do
+  double offsetSecs = 0;
+  double stdSecs = 0;      ///< one sigma, from the scatter between pairs
+  double rmsPx = 0;        ///< of the tracks that fit, from their epipolar segments
+  double fitting = 0;      ///< share of the tracks within three pixels
+  int pairs = 0, tracks = 0;
+  std::string report() const;
+};
+
+/// Finds the offset at which the trajectory's relative poses explain how the pictures moved. A place seen at x in the
+/// first picture must be seen in the second on the segment that its ray draws there, from infinity to `nearestM`; the
+/// distance from it is what is minimised, robustly, over the one unknown. That uses rotation and translation alike, and needs no
+/// depth; for a camera that only turns the segment is a point.
+///
+/// A search over the range comes first, Gauss-Newton from its best. The standard deviation is the
+/// sandwich estimator clustered by pair (Liang and Zeger 1986), because the tracks of a pair share their poses' errors.
+///
+/// Not found, with the reason: too few tracks; a camera that stands still or moves evenly, whose relative poses do not
+/// depend on the offset; another place in the range that explains the pictures as well; the best at the end of
+/// the range; poses that explain them nowhere. Error for options that make no sense.
+Result<ClockOffset> estimateClockOffset(const std::vector<TrackedPair>& pairs, const Camera& camera, const PoseTrack& track,
+                                        const ClockOffsetOptions& options, const Progress& progress);
+
+}  // namespace alidade
