@@ -70,6 +70,8 @@ const std::vector<ActionSpec>& actionTable() {
        "Shows how a scan is thinned, cleaned, classified and fitted to another one"},
       {C::CleanScan, "cleanScan", "Clean the scan", "", "", "Cleans the scan that the panel names, as it is ticked there"},
       {C::RegisterScan, "registerScan", "Register the scan", "", "", "Fits the scan that the panel names to the one that stays"},
+      {C::ShowClock, "showClock", "Clock", "", "",
+       "Shows how pictures and poses agree in time: clock offset, row read-out"},
       {C::ThemeDark, "themeDark", "Dark", "", "", "Neutral dark grey, so that the picture is judged fairly",
        true},
       {C::ThemeLight, "themeLight", "Light", "", "", "Light surroundings", true},

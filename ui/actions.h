@@ -53,6 +53,7 @@ enum class Command {
   ShowCleaning,
   CleanScan,
   RegisterScan,
+  ShowClock,
   ThemeDark,
   ThemeLight,
   ThemeContrast,

@@ -20,6 +20,7 @@
 #include <QVBoxLayout>
 
 #include "ui/cleaning_panel.h"
+#include "ui/clock_panel.h"
 #include "ui/command_palette.h"
 #include "ui/display_panel.h"
 #include "ui/export_dialog.h"
@@ -181,6 +182,7 @@ void MainWindow::buildDocks() {
   m_displayDock = dock(tr("Display"), QStringLiteral("displayDock"), new DisplayPanel(*m_session),
                        Qt::RightDockWidgetArea);
   m_pointsDock = dock(tr("Points"), QStringLiteral("pointsDock"), new PointsPanel(*m_session), Qt::RightDockWidgetArea);
+  m_clockDock = dock(tr("Clock"), QStringLiteral("clockDock"), new ClockPanel(*m_session), Qt::RightDockWidgetArea);
   m_resectionDock =
       dock(tr("Refine pose"), QStringLiteral("resectionDock"), m_resectionPanel, Qt::RightDockWidgetArea);
   m_cleaningPanel = new CleaningPanel(*m_session, *m_scanWork);
@@ -220,6 +222,7 @@ void MainWindow::defaultLayout() {
   tabifyDockWidget(m_propertiesDock, m_resectionDock);
   tabifyDockWidget(m_displayDock, m_pointsDock);
   tabifyDockWidget(m_displayDock, m_cleaningDock);
+  tabifyDockWidget(m_displayDock, m_clockDock);
   addDockWidget(Qt::BottomDockWidgetArea, m_messageDock);
   m_propertiesDock->raise();
   m_displayDock->raise();

@@ -89,6 +89,7 @@ void MainWindow::buildMenus() {
     if (dock != m_messageDock) panels->addAction(dock->toggleViewAction());
   panels->addAction(a[C::ShowMessages]);
   panels->addAction(a[C::ShowPoints]);
+  panels->addAction(a[C::ShowClock]);
   panels->addSeparator();
   panels->addAction(a[C::ResetLayout]);
   QMenu* theme = view->addMenu(icon(QStringLiteral("theme")), tr("Theme"));
@@ -305,6 +306,10 @@ void MainWindow::connectViewActions() {
   connect(a[C::ShowMessages], &QAction::toggled, m_messageDock, &QWidget::setVisible);
   connect(m_messageDock, &QDockWidget::visibilityChanged, this, [this] {
     (*m_actions)[C::ShowMessages]->setChecked(m_messageDock->toggleViewAction()->isChecked());
+  });
+  connect(a[C::ShowClock], &QAction::triggered, this, [this] {
+    m_clockDock->show();
+    m_clockDock->raise();
   });
   connect(a[C::ShowPoints], &QAction::triggered, this, [this] {
     m_pointsDock->show();

@@ -9,9 +9,23 @@
 namespace alidade {
 
 Playback::Playback(Session& session, QObject* parent) : QObject(parent), m_session(session) {
-  m_timer.setTimerType(Qt::PreciseTimer);
-  connect(&m_timer, &QTimer::timeout, this, &Playback::tick);
+  m_clock.start();
+  m_due.setTimerType(Qt::PreciseTimer);
+  m_due.setSingleShot(true);
+  connect(&m_due, &QTimer::timeout, this, &Playback::showDue);
   connect(&session, &Session::structureChanged, this, [this] { setPlaying(false); });
+  connect(&session, &Session::playedFailed, this, [this] { setPlaying(false); });
+  connect(&session, &Session::playedReady, this, [this](const std::shared_ptr<const RenderResult>& result) {
+    if (result->request.run != m_run) return;
+    m_schedule.drawn();
+    m_ready.push_back(result);
+    showDue();
+  });
+  // Whoever goes to another frame by hand plays on from there.
+  connect(&session, &Session::frameChanged, this, [this] {
+    const auto& shown = m_session.rendered();
+    if (m_playing && shown && shown->request.frame != m_session.frame()) begin(m_session.frameIndex() - 1);
+  });
 }
 
 double Playback::cameraRate(const Project& project) {
@@ -29,41 +43,69 @@ double Playback::cameraRate(const Project& project) {
 }
 
 void Playback::setPlaying(bool on) {
-  if (on == playing()) return;
-  if (!on) {
-    m_timer.stop();
-    emit changed();
-    return;
-  }
+  if (on == m_playing) return;
   const int count = static_cast<int>(m_session.project()->frames.size());
-  if (count < 2) {
+  if (on && count < 2) {
     emit changed();
     return;
   }
-  if (m_session.frameIndex() >= count - 1) m_session.setFrameIndex(0);
-  m_rate = cameraRate(*m_session.project());
-  m_startIndex = m_session.frameIndex();
-  m_dropped = m_shown = 0;
-  m_shownPerSecond = 0;
-  m_clock.start();
-  m_timer.start(std::max(4, static_cast<int>(500.0 / m_rate)));
+  if (!on) return stop();
+  m_playing = true;
+  m_droppedBefore = 0;
+  m_session.setPlaying(true);
+  begin(m_session.frameIndex() >= count - 1 ? -1 : m_session.frameIndex());
   emit changed();
 }
 
-void Playback::tick() {
-  const double elapsed = static_cast<double>(m_clock.elapsed()) / 1000.0;
-  const int last = static_cast<int>(m_session.project()->frames.size()) - 1;
-  const int wanted = std::min(last, m_startIndex + static_cast<int>(std::floor(elapsed * m_rate)));
-  const int now = m_session.frameIndex();
-  if (wanted != now && !m_session.renderLoop().busy()) {
-    m_dropped += std::max(0, wanted - now - 1);
-    ++m_shown;
-    m_shownPerSecond = m_shown / std::max(elapsed, 1e-3);
-    m_session.keepMoving();
-    m_session.setFrameIndex(wanted);
+void Playback::setSpeed(double factor) {
+  if (!(factor > 0) || factor == m_speed) return;
+  m_speed = factor;
+  if (m_playing) begin(m_session.frameIndex());
+  emit changed();
+}
+
+void Playback::begin(int after) {
+  m_session.renderLoop().dropPlayed();
+  m_droppedBefore += m_schedule.dropped();
+  m_ready.clear();
+  ++m_run;
+  m_shownPerSecond = 0;
+  std::vector<double> secs;
+  for (const Frame& frame : m_session.project()->frames) secs.push_back(frame.timeSecs);
+  m_schedule.begin(std::move(secs), after, m_speed, now());
+  askForMore();
+}
+
+void Playback::askForMore() {
+  while (m_playing) {
+    const auto order = m_schedule.order(now());
+    if (!order) return;
+    m_session.requestPlayed(order->frame, order->next, m_run);
+  }
+}
+
+void Playback::showDue() {
+  if (!m_playing) return;
+  if (m_schedule.takeDue(now())) {
+    const auto result = m_ready.front();
+    m_ready.pop_front();
+    m_shownPerSecond = m_schedule.shownPerSecond(now());
+    askForMore();
+    m_session.showPlayed(result);
     emit changed();
   }
-  if (m_session.frameIndex() >= last) setPlaying(false);
+  if (!m_playing) return;
+  if (m_schedule.finished()) return stop();
+  if (const auto due = m_schedule.nextDue()) m_due.start(std::max(0, static_cast<int>(std::floor((*due - now()) * 1000))));
+}
+
+void Playback::stop() {
+  m_playing = false;
+  m_due.stop();
+  m_ready.clear();
+  ++m_run;
+  m_session.setPlaying(false);
+  emit changed();
 }
 
 }  // namespace alidade

@@ -3,26 +3,32 @@
 
 #pragma once
 
+#include <deque>
+#include <memory>
+
 #include <QElapsedTimer>
 #include <QObject>
 #include <QTimer>
 
+#include "app/play_schedule.h"
 #include "ui/session.h"
 
 namespace alidade {
 
-/// Plays the frames at the camera's rate. Where drawing is slower, frames are skipped, never slowed,
-/// and counted.
+/// Plays the frames by their own times, see app/play_schedule.h. The render loop draws them; here they are only asked
+/// for, kept and shown.
 class Playback : public QObject {
   Q_OBJECT
 
  public:
   explicit Playback(Session& session, QObject* parent = nullptr);
 
-  bool playing() const { return m_timer.isActive(); }
+  bool playing() const { return m_playing; }
   void setPlaying(bool on);
   void toggle() { setPlaying(!playing()); }
-  int dropped() const { return m_dropped; }
+  double speed() const { return m_speed; }
+  void setSpeed(double factor);
+  int dropped() const { return m_droppedBefore + m_schedule.dropped(); }
   double shownPerSecond() const { return m_shownPerSecond; }
 
   /// Frames a second of the camera: the video's own, else the median step of the frame times, else 2.
@@ -32,13 +38,21 @@ class Playback : public QObject {
   void changed();
 
  private:
-  void tick();
+  void begin(int after);
+  double now() const { return static_cast<double>(m_clock.nsecsElapsed()) * 1e-9; }
+  void askForMore();
+  void showDue();
+  void stop();
 
   Session& m_session;
-  QTimer m_timer;
+  PlaySchedule m_schedule;
+  QTimer m_due;
   QElapsedTimer m_clock;
-  int m_startIndex = 0, m_dropped = 0, m_shown = 0;
-  double m_rate = 2, m_shownPerSecond = 0;
+  bool m_playing = false;
+  double m_speed = 1, m_shownPerSecond = 0;
+  int m_droppedBefore = 0;  ///< since Play, in runs that a jump or another speed ended
+  int m_run = 0;            ///< so that a frame asked for before is told from one asked for since
+  std::deque<std::shared_ptr<const RenderResult>> m_ready;
 };
 
 }  // namespace alidade

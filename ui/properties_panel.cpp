@@ -73,6 +73,7 @@ void PropertiesPanel::row(const QString& name, const QString& value, const QStri
 }
 
 void PropertiesPanel::rebuild() {
+  if (m_session.playing()) return;  // made anew once it stops
   auto* page = new QWidget;
   m_layout = new QVBoxLayout(page);
   m_layout->setContentsMargins(10, 8, 10, 8);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <utility>
 
 namespace alidade {
 
@@ -37,14 +38,20 @@ RenderLoop::~RenderLoop() {
 void RenderLoop::request(RenderRequest request) {
   {
     const std::lock_guard lock(m_mutex);
-    m_waiting = std::move(request);
+    if (request.played) m_played.push_back(std::move(request));
+    else m_waiting = std::move(request);
   }
   m_wake.notify_all();
 }
 
 bool RenderLoop::busy() const {
   const std::lock_guard lock(m_mutex);
-  return m_rendering || m_waiting.has_value();
+  return m_rendering || m_waiting.has_value() || !m_played.empty();
+}
+
+void RenderLoop::dropPlayed() {
+  const std::lock_guard lock(m_mutex);
+  m_played.clear();
 }
 
 void RenderLoop::runOnThread(std::function<void(OverlayRenderer&, PictureCache&)> task) {
@@ -68,7 +75,7 @@ void RenderLoop::loop() {
   }
   std::unique_lock lock(m_mutex);
   while (true) {
-    m_wake.wait(lock, [this] { return m_stop || m_waiting || !m_tasks.empty(); });
+    m_wake.wait(lock, [this] { return m_stop || m_waiting || !m_tasks.empty() || !m_played.empty(); });
     if (m_stop) return;
     m_rendering = true;
     if (!m_tasks.empty()) {
@@ -77,8 +84,8 @@ void RenderLoop::loop() {
       lock.unlock();
       if (renderer) task(**renderer, m_pictures);
     } else {
-      const RenderRequest request = std::move(*m_waiting);
-      m_waiting.reset();
+      const RenderRequest request = m_waiting ? *std::exchange(m_waiting, std::nullopt) : std::move(m_played.front());
+      if (request.played) m_played.pop_front();
       lock.unlock();
       if (renderer) render(**renderer, request);
     }
@@ -90,20 +97,19 @@ void RenderLoop::loop() {
 void RenderLoop::render(OverlayRenderer& renderer, const RenderRequest& request) {
   auto result = std::make_shared<RenderResult>();
   result->request = request;
-  Project project = *request.project;
-  project.display = request.display;
-  Frame* frame = project.findFrame(request.frame);
+  const Project& project = *request.project;
+  const Frame* frame = project.findFrame(request.frame);
   if (!frame) return;
-  if (request.pose) frame->cameraFromWorld = request.pose;
 
   const auto start = Clock::now();
   auto picture = m_pictures.picture(project, *frame);
+  if (!request.next.empty()) m_pictures.expect(project, request.next);
   result->decodeMs = millisecondsSince(start);
   if (!picture) {
     emit failed(request.frame, request.serial, picture.error());
     return;
   }
-  auto description = describeFrame(project, *request.data, request.frame, *picture, request.selection);
+  auto description = describeFrame(project, *request.data, request.frame, *picture, request.selection, request.pose);
   if (!description) {
     // A picture without a pose is still worth looking at.
     result->problem = description.error();
@@ -112,6 +118,8 @@ void RenderLoop::render(OverlayRenderer& renderer, const RenderRequest& request)
     emit finished(result);
     return;
   }
+  description->display = request.display;
+  description->occlusionShrink = request.played ? 2 : 1;
   description->width = request.width;
   description->height = request.height;
   if (!request.residuals) description->residuals.clear();

@@ -34,6 +34,10 @@ struct RenderRequest {
   quint64 serial = 0;         ///< counts requests; a later one wins
   std::optional<FramePace> pace;  ///< something is being dragged or played: in time before complete
   bool draft = false;         ///< a smaller picture
+  /// Of a video being played: waits for its turn instead of replacing what waits, and is drawn as playing allows.
+  bool played = false;
+  int run = 0;  ///< the playing that it belongs to
+  std::vector<FrameId> next;  ///< pictures to be decoded meanwhile
 };
 
 struct RenderResult {
@@ -43,8 +47,8 @@ struct RenderResult {
   double decodeMs = 0, renderMs = 0;
 };
 
-/// The thread that decodes and renders. Latest wins: a request made while another is being rendered
-/// replaces the one that waits. Owns the renderer, so that its device is also made off the GUI thread.
+/// The thread that renders. Latest wins: a request made while another is being rendered replaces the one that waits;
+/// only played frames queue up behind each other. Owns the renderer, so that its device is also made off the GUI thread.
 class RenderLoop : public QObject {
   Q_OBJECT
 
@@ -54,6 +58,8 @@ class RenderLoop : public QObject {
 
   void request(RenderRequest request);
   bool busy() const;
+  /// Forgets played frames that wait.
+  void dropPlayed();
   /// Runs on the render thread, before any waiting request: exports share the one device.
   void runOnThread(std::function<void(OverlayRenderer&, PictureCache&)> task);
   void dropPictures();
@@ -73,6 +79,7 @@ class RenderLoop : public QObject {
   mutable std::mutex m_mutex;
   std::condition_variable m_wake;
   std::optional<RenderRequest> m_waiting;
+  std::deque<RenderRequest> m_played;
   std::deque<std::function<void(OverlayRenderer&, PictureCache&)>> m_tasks;
   bool m_rendering = false;
   bool m_stop = false;

@@ -4,6 +4,7 @@
 #include "ui/session.h"
 
 #include <algorithm>
+#include <utility>
 
 #include <QSettings>
 
@@ -296,25 +297,30 @@ void Session::requestRender() {
   QMetaObject::invokeMethod(this, &Session::sendRequest, Qt::QueuedConnection);
 }
 
-void Session::sendRequest() {
-  m_requestDue = false;
-  const Frame* frame = currentFrame();
-  if (!frame) return;
+RenderRequest Session::requestOf(const Frame& frame) {
   RenderRequest request;
   request.project = m_project;
   request.data = m_data;
   request.display = m_display;
-  request.frame = m_frame;
+  request.frame = frame.id;
   request.selection = m_selection;
+  request.rawOnly = m_rawOnly;
+  request.residuals = m_residuals;
+  request.width = m_width;
+  request.height = m_height;
+  return request;
+}
+
+void Session::sendRequest() {
+  m_requestDue = false;
+  const Frame* frame = currentFrame();
+  if (!frame || m_playing) return;
+  RenderRequest request = requestOf(*frame);
   if (m_showBefore)
     request.pose = m_candidate ? frame->cameraFromWorld : frame->originalCameraFromWorld;
   else
     request.pose = m_candidate;
   request.before = m_showBefore;
-  request.rawOnly = m_rawOnly;
-  request.residuals = m_residuals;
-  request.width = m_width;
-  request.height = m_height;
   if (m_dragging) request.pace = m_pace;
   if (request.pace && m_pace.frameTimeMs > 0 && m_renderMs > m_pace.frameTimeMs && m_width > 0) {
     request.width = std::max(1, m_width / 2);
@@ -326,12 +332,53 @@ void Session::sendRequest() {
   m_render.request(std::move(request));
 }
 
+void Session::setPlaying(bool on) {
+  if (std::exchange(m_playing, on) == on || on) return;
+  m_render.dropPlayed();
+  emit frameChanged();  // for those that kept still meanwhile
+  requestRender();
+}
+
+void Session::requestPlayed(int index, const std::vector<int>& next, int run) {
+  const auto& frames = m_project->frames;
+  if (index < 0 || index >= static_cast<int>(frames.size())) return;
+  RenderRequest request = requestOf(frames[static_cast<std::size_t>(index)]);
+  request.played = true;
+  request.pace = m_pace;
+  request.run = run;
+  // A played frame has the camera's step; what the user set for dragging is the least.
+  request.pace = m_pace;
+  if (m_pace.frameTimeMs > 0) request.pace->frameTimeMs = std::max(m_pace.frameTimeMs, 55.0);
+  // Even sizes, so that what hides the design may be judged on half of them.
+  const CameraRecord* camera = m_project->findCamera(frames[static_cast<std::size_t>(index)].camera);
+  if (request.width == 0 && camera) request.width = camera->camera.width(), request.height = camera->camera.height();
+  request.width &= ~1, request.height &= ~1;
+  for (const int i : next)
+    if (i >= 0 && i < static_cast<int>(frames.size())) request.next.push_back(frames[static_cast<std::size_t>(i)].id);
+  request.serial = m_requestsSent;
+  m_render.request(std::move(request));
+}
+
+void Session::showPlayed(const std::shared_ptr<const RenderResult>& result) {
+  if (!m_project->findFrame(result->request.frame)) return;
+  m_frame = result->request.frame;
+  m_candidate.reset();
+  m_showBefore = false;
+  m_rendered = result;
+  emit frameChanged();
+  emit pictureReady(result);
+}
+
 bool Session::upToDate() const {
   return !m_requestDue && !m_settle.isActive() && m_requestsAnswered == m_requestsSent && !m_render.busy();
 }
 
 void Session::onRendered(const std::shared_ptr<const RenderResult>& result) {
   m_requestsAnswered = result->request.serial;
+  if (result->request.played) {
+    if (m_playing && result->request.project == m_project) emit playedReady(result);
+    return;
+  }
   const std::string problem = result->problem ? result->problem->text() : std::string();
   if (!problem.empty() && problem != m_lastRenderError) m_messages.error(*result->problem);
   m_lastRenderError = problem;
@@ -344,6 +391,11 @@ void Session::onRendered(const std::shared_ptr<const RenderResult>& result) {
 
 void Session::onFailed(FrameId frame, quint64 serial, const Error& error) {
   m_requestsAnswered = serial;
+  if (m_playing) {
+    m_messages.error(error);
+    emit playedFailed();
+    return;
+  }
   if (frame != m_frame) return;
   // The same trouble again and again, while a slider moves, is one message.
   if (error.text() != m_lastRenderError) m_messages.error(error);

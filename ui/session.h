@@ -91,6 +91,12 @@ class Session : public QObject {
 
   const std::shared_ptr<const RenderResult>& rendered() const { return m_rendered; }
   bool upToDate() const;
+
+  // Playing: frames are asked for ahead and shown when they are due, so that nothing waits on this thread.
+  bool playing() const { return m_playing; }
+  void setPlaying(bool on);  ///< off: the current frame is drawn as it is when still
+  void requestPlayed(int index, const std::vector<int>& next, int run);
+  void showPlayed(const std::shared_ptr<const RenderResult>& result);
   double renderMs() const { return m_renderMs; }
   void requestRender();
   /// The view moves, and will be still soon: quick pictures until then.
@@ -108,10 +114,13 @@ class Session : public QObject {
   void renderFailed(const alidade::Error& error);
   void modifiedChanged();
   void beforeShown(bool on);
+  void playedReady(std::shared_ptr<const alidade::RenderResult> result);  ///< to be shown when it is due
+  void playedFailed();
 
  private:
   friend class ProjectChange;
   void restore(std::shared_ptr<const Project> snapshot);
+  RenderRequest requestOf(const Frame& frame);
   void sendRequest();
   void onRendered(const std::shared_ptr<const RenderResult>& result);
   void onFailed(FrameId frame, quint64 serial, const Error& error);
@@ -127,7 +136,7 @@ class Session : public QObject {
   SelectionState m_selection;
   FrameId m_frame;
 
-  bool m_rawOnly = false, m_residuals = true, m_showBefore = false, m_dragging = false;
+  bool m_rawOnly = false, m_residuals = true, m_showBefore = false, m_dragging = false, m_playing = false;
   std::optional<RigidTransform> m_candidate;
   int m_width = 0, m_height = 0;
   std::shared_ptr<const RenderResult> m_rendered;

@@ -145,6 +145,13 @@ Timeline::Timeline(Session& session, Playback& playback, const Actions& actions,
   m_rate->setProperty("role", "dim");
   m_rate->setMinimumWidth(150);
   m_rate->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
+  m_speed = new QComboBox;
+  m_speed->setObjectName(QStringLiteral("playSpeed"));
+  m_speed->setToolTip(tr("How fast it plays"));
+  m_speed->setFocusPolicy(Qt::ClickFocus);
+  for (const double factor : {0.1, 0.25, 0.5, 1.0, 2.0, 4.0}) m_speed->addItem(tr("%1 ×").arg(factor), factor);
+  m_speed->setCurrentIndex(m_speed->findData(1.0));
+  connect(m_speed, &QComboBox::activated, this, [this](int index) { m_playback.setSpeed(m_speed->itemData(index).toDouble()); });
   m_list = new QComboBox;
   m_list->setToolTip(tr("All frames"));
   m_list->setMinimumWidth(170);
@@ -155,6 +162,7 @@ Timeline::Timeline(Session& session, Playback& playback, const Actions& actions,
   layout->addWidget(m_time);
   layout->addWidget(m_strip, 1);
   layout->addWidget(m_rate);
+  layout->addWidget(m_speed);
   layout->addWidget(m_list);
   connect(m_list, &QComboBox::activated, this, [this](int index) { m_session.setFrameIndex(index); });
   connect(&session, &Session::structureChanged, this, &Timeline::refillList);

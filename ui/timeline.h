@@ -53,7 +53,7 @@ class Timeline : public QWidget {
   QLabel* m_position;
   QLabel* m_time;
   QLabel* m_rate;
-  QComboBox* m_list;
+  QComboBox *m_speed, *m_list;
 };
 
 }  // namespace alidade

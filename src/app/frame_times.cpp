@@ -143,4 +143,11 @@ Result<void> setFrameRate(Project& project, VideoId video, double framesPerSecon
   return {};
 }
 
+std::ptrdiff_t firstFallingTime(const Project& project, VideoId video) {
+  const std::vector<std::size_t> frames = framesOf(project, video);
+  for (std::size_t i = 1; i < frames.size(); ++i)
+    if (!(project.frames[frames[i]].timeSecs > project.frames[frames[i - 1]].timeSecs)) return static_cast<std::ptrdiff_t>(frames[i]);
+  return -1;
+}
+
 }  // namespace alidade

@@ -30,4 +30,7 @@ Result<void> setFrameTimes(Project& project, VideoId video, const std::vector<Fr
 /// The same at a constant rate, from `startSecs`.
 Result<void> setFrameRate(Project& project, VideoId video, double framesPerSecond, double startSecs);
 
+/// The first frame of a video, or else of none, whose time does not lie after the one before; -1 where all rise.
+std::ptrdiff_t firstFallingTime(const Project& project, VideoId video);
+
 }  // namespace alidade

@@ -67,6 +67,9 @@ struct FrameDescription {
   // While the view moves, frames are quick before they are complete (frame_pacer.h).
   std::uint64_t pointBudget = 0;  ///< of each scan pass, over all scans; 0: none
   double selectionAgeMs = 0;      ///< points chosen for an earlier frame may serve this one for so long
+  /// 2: judges what hides the design on a picture half as wide and high and spreads that along its surfaces (see
+  /// raster/depth_spread.h): for playing, where a frame has a fifteenth of a second. Only for even sizes.
+  int occlusionShrink = 1;
 };
 
 /// Pixels of one design element, counted on the result. The front layer counts by its state; the hidden

@@ -9,6 +9,7 @@
 #include <limits>
 #include <vector>
 
+#include "raster/depth_spread.h"
 #include "raster/eye_dome.h"
 #include "raster/occlusion.h"
 #include "raster/splatter.h"
@@ -124,7 +125,9 @@ ScanPictures ScanPainter::draw(const FrameDescription& frame, const Camera& came
     pictures.chosen += chosen[i].pointCount;
   }
   // Also with the depth pass off: the read-out under the cursor stands on it.
-  pictures.depth = occlusion(frame, camera, pictures.judged);
+  const bool halves = frame.occlusionShrink == 2 && camera.width() % 2 == 0 && camera.height() % 2 == 0;
+  pictures.depth = halves ? spreadDepth(occlusion(frame, camera.scaledTo(camera.width() / 2, camera.height() / 2), pictures.judged))
+                          : occlusion(frame, camera, pictures.judged);
   for (std::size_t i = 0; i < layers.size(); ++i) {
     stylerOf(frame.scans[i].points)
         .apply(frame.display.points, shown ? PointStyler::Part::ColourAndFilter : PointStyler::Part::Filter,

@@ -89,6 +89,9 @@ TEST_F(FrameTimesTest, AConstantRateCountsFromItsStart) {
   EXPECT_THAT(secs(), testing::ElementsAre(10, 10.04, 10.08, 10.12));
   EXPECT_FALSE(setFrameRate(m_project, {}, 0, 0));
   EXPECT_FALSE(setFrameRate(m_project, VideoId{7}, 25, 0)) << "a video that is not there";
+  EXPECT_EQ(firstFallingTime(m_project, {}), -1);
+  m_project.frames[2].timeSecs = 0;
+  EXPECT_EQ(firstFallingTime(m_project, {}), 2);
 }
 
 }  // namespace alidade
