@@ -344,7 +344,6 @@ void Session::requestPlayed(int index, const std::vector<int>& next, int run) {
   if (index < 0 || index >= static_cast<int>(frames.size())) return;
   RenderRequest request = requestOf(frames[static_cast<std::size_t>(index)]);
   request.played = true;
-  request.pace = m_pace;
   request.run = run;
   // A played frame has the camera's step; what the user set for dragging is the least.
   request.pace = m_pace;

@@ -106,7 +106,8 @@ CREATE TABLE control_point (
 );
 
 CREATE TABLE observation (
-  position INTEGER PRIMARY KEY, id, frame, u_px, v_px, e, n, h, sigma_px, name, enabled
+  position INTEGER PRIMARY KEY, id, frame, kind, u_px, v_px, e, n, h, e2, n2, h2, sigma_px, sigma_m, name,
+  enabled, held_out
 );
 
 CREATE TABLE annotation (

@@ -136,6 +136,20 @@ Result<void> Builder::add(const ObservationRow& row) {
   return {};
 }
 
+ObservationKind kindOf(ObservedKind kind) {
+  switch (kind) {
+    case ObservedKind::Control:
+      return ObservationKind::Control;
+    case ObservedKind::Scan:
+      return ObservationKind::Scan;
+    case ObservedKind::Tie:
+      return ObservationKind::Tie;
+    case ObservedKind::Edge:
+      return ObservationKind::Edge;
+  }
+  return ObservationKind::Control;
+}
+
 }  // namespace
 
 Result<NetworkRefinement> networkOf(const Project& project, const std::string& frame,
@@ -156,7 +170,9 @@ std::vector<ObservationRow> observationRowsOf(const Project& project) {
     row.where = fmt::format("{}, observation {}", project.path, i + 1);
     row.frame = frame->name;
     row.name = o.name.empty() ? fmt::format("observation {}", i + 1) : o.name;
-    row.pixel = o.pixel, row.world = o.world, row.sigmaPx = o.sigmaPx;
+    row.kind = kindOf(o.kind);
+    row.pixel = o.pixel, row.world = o.world, row.sigmaPx = o.sigmaPx, row.sigmaM = o.sigmaM, row.heldOut = o.heldOut;
+    if (o.kind == ObservedKind::Edge) row.second = o.edgeEnd;
     rows.push_back(std::move(row));
   }
   return rows;

@@ -326,12 +326,16 @@ template <class V>
 void visit(V& v, Observation& observation) {
   v("id", observation.id);
   v("frame", observation.frame);
+  v.choice("kind", observation.kind, {"control", "scan", "tie", "edge"});
   v("u_px", observation.pixel.x);
   v("v_px", observation.pixel.y);
   visitVector(v, {"e", "n", "h"}, observation.world);
+  visitVector(v, {"e2", "n2", "h2"}, observation.edgeEnd);
   v("sigma_px", observation.sigmaPx);
+  v("sigma_m", observation.sigmaM);
   v("name", observation.name);
   v("enabled", observation.enabled);
+  v("held_out", observation.heldOut);
 }
 
 template <class V>

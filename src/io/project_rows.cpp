@@ -17,6 +17,7 @@ QVariant variantFromText(const std::string& text) {
 }
 
 void RowReader::operator()(const char* column, double& value) {
+  if (skipsAbsent()) return;
   const QVariant stored = m_query.value(m_index++);
   if (stored.isNull()) {
     value = std::numeric_limits<double>::quiet_NaN();
@@ -28,6 +29,7 @@ void RowReader::operator()(const char* column, double& value) {
 }
 
 void RowReader::operator()(const char* column, std::string& value) {
+  if (skipsAbsent()) return;
   const QVariant stored = m_query.value(m_index++);
   const int type = stored.metaType().id();
   check(!stored.isNull() && (type == QMetaType::QString || type == QMetaType::QByteArray), column, "is no text");
@@ -36,6 +38,7 @@ void RowReader::operator()(const char* column, std::string& value) {
 }
 
 void RowReader::operator()(const char* column, bool& value) {
+  if (skipsAbsent()) return;
   const std::int64_t stored = integer(column);
   check(stored == 0 || stored == 1, column, "is neither 0 nor 1");
   value = stored == 1;

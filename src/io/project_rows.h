@@ -60,9 +60,10 @@ class RowWriter {
 
 /// Gives the current row of a query to `visit`, column by column in the same order. Stops at the
 /// first value that is not what the column holds: SQLite lets any value stand anywhere.
+/// Columns that `absent` marks are of a later version than the file: their members keep their defaults.
 class RowReader {
  public:
-  explicit RowReader(const QSqlQuery& query) : m_query(query) {}
+  RowReader(const QSqlQuery& query, const std::vector<bool>& absent) : m_query(query), m_absent(absent) {}
 
   void operator()(const char* column, double& value);
   void operator()(const char* column, std::string& value);
@@ -72,6 +73,7 @@ class RowReader {
   template <class T>
     requires std::is_integral_v<T>
   void operator()(const char* column, T& value) {
+    if (skipsAbsent()) return;
     const std::int64_t stored = integer(column);
     // 64-bit sizes are stored by their bits, SQLite has no unsigned integers.
     if constexpr (sizeof(T) < 8)
@@ -82,6 +84,7 @@ class RowReader {
   }
   template <class E>
   void choice(const char* column, E& value, std::initializer_list<const char*> names) {
+    if (skipsAbsent()) return;
     std::string name;
     (*this)(column, name);
     for (std::size_t i = 0; i < names.size(); ++i) {
@@ -99,8 +102,14 @@ class RowReader {
 
  private:
   std::int64_t integer(const char* column);
+  bool skipsAbsent() {
+    if (!m_absent[static_cast<std::size_t>(m_index)]) return false;
+    ++m_index;
+    return true;
+  }
 
   const QSqlQuery& m_query;
+  const std::vector<bool>& m_absent;
   int m_index = 0;
   std::string m_problem;
 };

@@ -11,7 +11,8 @@ namespace alidade {
 /// resources/schemas/project.sql.
 extern const std::string_view kProjectSchema;
 
-/// Raise it with every change of the schema.
+/// Raise it once a release with every change of the schema. A column added since an older version keeps its member's
+/// default when such a file is read.
 inline constexpr std::uint32_t kProjectVersion = 3;
 
 /// SQLite's application_id: "ALID".

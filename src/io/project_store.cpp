@@ -41,25 +41,30 @@ std::vector<std::string> schemaStatements() {
 }
 
 template <class T>
-std::string columnList() {
+std::vector<const char*> columnsOf() {
   RowWriter row;
   T blank{};
   visit(row, blank);
+  return row.columns();
+}
+
+/// As SQL lists them; NULL stands for those that are `absent`.
+std::string columnList(const std::vector<const char*>& columns, const std::vector<bool>& absent) {
   std::string list;
-  for (const char* column : row.columns()) list += (list.empty() ? "" : ", ") + std::string(column);
+  for (std::size_t i = 0; i < columns.size(); ++i)
+    list += (i == 0 ? "" : ", ") + std::string(absent[i] ? "NULL" : columns[i]);
   return list;
 }
 
 template <class T>
 Result<void> writeRows(const ProjectDatabase& database, const std::string& table, const std::vector<T>& rows) {
   if (rows.empty()) return {};
-  RowWriter first;
-  T blank{};
-  visit(first, blank);
+  const auto columns = columnsOf<T>();
   std::string marks = "?";
-  for (std::size_t i = 1; i < first.columns().size(); ++i) marks += ", ?";
+  for (std::size_t i = 1; i < columns.size(); ++i) marks += ", ?";
   QSqlQuery query = database.query();
-  const std::string statement = "INSERT INTO " + table + " (" + columnList<T>() + ") VALUES (" + marks + ")";
+  const std::string statement = "INSERT INTO " + table + " (" +
+                                columnList(columns, std::vector<bool>(columns.size())) + ") VALUES (" + marks + ")";
   if (!query.prepare(QString::fromStdString(statement)))
     return fail(database.error(query, "The project's " + table + " table cannot be written"));
   for (std::size_t i = 0; i < rows.size(); ++i) {
@@ -75,17 +80,33 @@ Result<void> writeRows(const ProjectDatabase& database, const std::string& table
   return {};
 }
 
+/// Which of the columns a file of an older version does not have yet. A file of this version has all.
+std::vector<bool> absentColumns(const ProjectDatabase& database, const std::string& table,
+                                const std::vector<const char*>& columns) {
+  std::vector<bool> absent(columns.size(), false);
+  QSqlQuery version = database.query();
+  if (!version.exec("PRAGMA user_version") || !version.next() || version.value(0).toUInt() >= kProjectVersion) return absent;
+  std::set<std::string> present;
+  QSqlQuery info = database.query();
+  info.exec(QString::fromStdString("PRAGMA main.table_xinfo(" + table + ")"));
+  while (info.next()) present.insert(info.value("name").toString().toStdString());
+  for (std::size_t i = 0; i < columns.size(); ++i) absent[i] = !present.contains(columns[i]);
+  return absent;
+}
+
 template <class T>
 Result<std::vector<T>> readRows(const ProjectDatabase& database, const std::string& path, const std::string& table,
                                 bool ordered = true) {
   QSqlQuery query = database.query();
-  const std::string statement = "SELECT " + columnList<T>() + " FROM main." + table + (ordered ? " ORDER BY position" : "");
+  const auto columns = columnsOf<T>();
+  const std::vector<bool> absent = absentColumns(database, table, columns);
+  const std::string statement = "SELECT " + columnList(columns, absent) + " FROM main." + table + (ordered ? " ORDER BY position" : "");
   if (!query.exec(QString::fromStdString(statement)))
     return fail(database.error(query, "The project's " + table + " table cannot be read"));
   std::vector<T> rows;
   while (query.next()) {
     T item{};
-    RowReader row(query);
+    RowReader row(query, absent);
     visit(row, item);
     if (!row.problem().empty())
       return fail("The project file is damaged: " + row.problem(), path + ", " + table + " " + std::to_string(rows.size() + 1),

@@ -118,15 +118,27 @@ struct ControlPoint {
   double sigmaM = 0.003;
 };
 
-/// A world point seen in a picture.
+/// What was seen in a picture.
+enum class ObservedKind {
+  Control,  ///< a surveyed or designed point
+  Scan,     ///< a point picked in a scan
+  Tie,      ///< a point of unknown place, under the same name in several frames; `world` is a first guess
+  Edge,     ///< a place on the straight edge from `world` to `edgeEnd`
+};
+
+/// A world point, or a place on an edge, seen in a picture.
 struct Observation {
   ObservationId id;
   FrameId frame;
-  glm::dvec2 pixel{0};  ///< OpenCV's origin
-  glm::dvec3 world{0};  ///< metres
+  ObservedKind kind = ObservedKind::Control;
+  glm::dvec2 pixel{0};    ///< OpenCV's origin
+  glm::dvec3 world{0};    ///< metres
+  glm::dvec3 edgeEnd{0};  ///< of an edge
   double sigmaPx = 0.5;
+  double sigmaM = 0;      ///< of the world point, on each axis
   std::string name;
   bool enabled = true;
+  bool heldOut = false;   ///< takes no part; its residual is shown beside the fitted ones
 };
 
 enum class AnnotationKind { Text, Arrow, Callout };

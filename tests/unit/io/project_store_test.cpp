@@ -342,11 +342,23 @@ TEST(ProjectStore, ReadsAProjectOfVersionOne) {
 TEST(ProjectStore, ReadsAProjectOfVersionTwo) {
   const TestFolder folder;
   const std::string path = savedProject(folder);
+  const auto whole = loadProject(path);
+  ASSERT_TRUE(whole) << whole.error().text();
+  for (const char* column : {"kind", "e2", "n2", "h2", "sigma_m", "held_out"})
+    tamper(path, QStringLiteral("ALTER TABLE observation DROP COLUMN %1").arg(column));
   for (const char* table : {"camera_shutter", "video_timing", "trajectory", "trajectory_pose", "frame_trajectory"})
     tamper(path, QStringLiteral("DROP TABLE %1").arg(table));
+  // Of this version the columns are missed, of an older one they take their defaults.
+  EXPECT_FALSE(loadProject(path));
   tamper(path, "PRAGMA user_version = 2");
   const auto loaded = loadProject(path);
   ASSERT_TRUE(loaded) << loaded.error().text();
+  ASSERT_EQ(loaded->observations.size(), whole->observations.size());
+  ASSERT_FALSE(loaded->observations.empty());
+  EXPECT_EQ(loaded->observations[0].name, whole->observations[0].name);
+  EXPECT_EQ(loaded->observations[0].pixel, whole->observations[0].pixel);
+  EXPECT_EQ(loaded->observations[0].kind, ObservedKind::Control);
+  EXPECT_EQ(loaded->observations[0].sigmaM, 0);
   EXPECT_TRUE(loaded->trajectories.empty());
   EXPECT_EQ(loaded->cameras[2].readoutSecs, 0);
   EXPECT_FALSE(loaded->frames[2].trajectory);
