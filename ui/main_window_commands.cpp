@@ -530,7 +530,7 @@ void MainWindow::refreshEnabled() {
   a[C::Delete]->setEnabled(static_cast<bool>(m_session->selection().annotation));
   a[C::HideSelected]->setEnabled(element);
   a[C::IsolateStorey]->setEnabled(element);
-  a[C::RefinePose]->setEnabled(frames && !m_refinement->running() && !m_refinement->observations().empty());
+  a[C::RefinePose]->setEnabled(frames && !m_refinement->running() && !m_refinement->observations(m_refinement->scope()).empty());
   a[C::AcceptPose]->setEnabled(m_refinement->hasCandidate());
   a[C::DropPose]->setEnabled(m_refinement->hasCandidate());
 }

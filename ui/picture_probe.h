@@ -38,6 +38,8 @@ class PictureProbe {
   std::optional<glm::dvec2> project(const glm::dvec3& world) const;
   /// Scan depth at a raw pixel, metres; NaN where unknown.
   double scanDepth(const glm::dvec2& raw) const;
+  /// What the picture was made of; null before the first, and where it has no pose.
+  const FrameDescription* description() const { return hasPose() ? &m_result->frame.description : nullptr; }
   /// The picture as decoded, for the magnifier; null before the first.
   const ColourImage* rawPicture() const;
 

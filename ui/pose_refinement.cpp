@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "app/observing.h"
 #include "ui/format.h"
 
 namespace alidade {
@@ -12,36 +13,67 @@ namespace alidade {
 namespace {
 
 struct RefineOutcome {
-  ResectionSummary summary;
-  Frame frame;
+  NetworkSummary summary;
+  std::vector<std::string> frameNames;
+  std::set<ObservationId> outliers;
+  std::shared_ptr<const Project> project;
 };
+
+/// What is known before the job starts; the project stays as it is.
+struct RefineTask {
+  std::shared_ptr<const Project> project;
+  std::vector<ObservationId> ids;
+  std::vector<ObservationRow> rows;
+  NetworkFreedom freedom;
+  glm::dvec3 judgedAt{0};
+  std::string frame;
+};
+
+Result<RefineOutcome> run(const RefineTask& task, const Progress& progress) {
+  const auto refinement = networkOf(*task.project, task.frame, task.rows, task.freedom);
+  if (!refinement) return fail(refinement.error());
+  NetworkOptions options;
+  for (std::size_t i = 0; i < refinement->frames.size(); ++i)
+    if (refinement->network.frames[i].name == task.frame) options.at.push_back({static_cast<int>(i), task.judgedAt});
+  Project copy = *task.project;
+  auto summary = refineNetwork(copy, *refinement, options, false, progress);
+  if (!summary) return fail(summary.error());
+  RefineOutcome outcome;
+  for (const NetworkFrame& frame : refinement->network.frames) outcome.frameNames.push_back(frame.name);
+  for (const NetworkResidual& r : summary->residuals) {
+    if (!r.outlier) continue;
+    const bool edge = r.kind == ResidualKind::Edge;
+    const bool point = r.kind == ResidualKind::Control || r.kind == ResidualKind::Scan || r.kind == ResidualKind::Tie;
+    if (!edge && !point) continue;
+    const auto& rows = edge ? refinement->edgeRows : refinement->observationRows;
+    outcome.outliers.insert(task.ids[rows[static_cast<std::size_t>(r.index)]]);
+  }
+  outcome.summary = std::move(*summary);
+  outcome.project = std::make_shared<const Project>(std::move(copy));
+  return outcome;
+}
 
 }  // namespace
 
 PoseRefinement::PoseRefinement(Session& session, QObject* parent) : QObject(parent), m_session(session) {
-  connect(&session, &Session::frameChanged, this, &PoseRefinement::forget);
+  connect(&session, &Session::frameChanged, this, &PoseRefinement::showCandidate);
   connect(&session, &Session::structureChanged, this, &PoseRefinement::forget);
   connect(&session, &Session::projectChanged, this, &PoseRefinement::changed);
 }
 
-std::vector<Observation> PoseRefinement::observations() const {
+std::vector<Observation> PoseRefinement::observations(RefinementScope scope) const {
   std::vector<Observation> own;
   for (const Observation& o : m_session.project()->observations)
-    if (o.frame == m_session.frame()) own.push_back(o);
+    if (scope == RefinementScope::AllFrames || o.frame == m_session.frame()) own.push_back(o);
   return own;
 }
 
-void PoseRefinement::add(const glm::dvec2& pixel, const glm::dvec3& world, const QString& name) {
-  m_session.change(tr("Add observation %1").arg(name), [&](Project& project) {
-    Observation o;
-    for (const Observation& other : project.observations) o.id.value = std::max(o.id.value, other.id.value);
-    ++o.id.value;
-    o.frame = m_session.frame();
-    o.pixel = pixel;
-    o.world = world;
-    o.name = name.toStdString();
-    project.observations.push_back(o);
-  });
+void PoseRefinement::add(Observation observation) {
+  if (observation.name.empty()) observation.name = freePointName(*m_session.project(), "S");
+  observation.id = nextObservationId(*m_session.project());
+  observation.frame = m_session.frame();
+  m_session.change(tr("Add observation %1").arg(text(observation.name)),
+                   [&](Project& project) { project.observations.push_back(observation); });
 }
 
 void PoseRefinement::remove(ObservationId id) {
@@ -57,73 +89,142 @@ void PoseRefinement::setEnabled(ObservationId id, bool enabled) {
   });
 }
 
+void PoseRefinement::setHeldOut(ObservationId id, bool heldOut) {
+  m_session.change(heldOut ? tr("Hold observation out as a check") : tr("Fit observation"), [&](Project& project) {
+    for (Observation& o : project.observations)
+      if (o.id == id) o.heldOut = heldOut;
+  });
+}
+
+void PoseRefinement::matchInOtherFrames(ObservationId id) {
+  const auto project = m_session.project();
+  const auto seen = std::find_if(project->observations.begin(), project->observations.end(),
+                                 [&](const Observation& o) { return o.id == id; });
+  if (seen == project->observations.end()) return;
+  m_session.jobs().run(
+      tr("Looking for %1 in other frames").arg(text(seen->name)),
+      [project, observation = *seen](const Progress& progress) {
+        PictureCache pictures(2);
+        return alidade::matchInOtherFrames(*project, observation, pictures, progress);
+      },
+      [this, name = text(seen->name)](Result<MatchedObservations> made) {
+        if (!made) return m_session.messages().error(made.error());
+        for (const std::string& note : made->notes) m_session.messages().info(tr("%1 not found in %2").arg(name, text(note)));
+        m_session.messages().info(tr("%1 found in %2 other frames").arg(name).arg(made->observations.size()));
+        if (made->observations.empty()) return;
+        m_session.change(tr("Observe %1 in %2 frames").arg(name).arg(made->observations.size()), [&](Project& project) {
+          // Others may have come since the job began.
+          ObservationId next = nextObservationId(project);
+          for (Observation found : made->observations) {
+            found.id = next, ++next.value;
+            project.observations.push_back(std::move(found));
+          }
+        });
+      });
+}
+
+void PoseRefinement::setScope(RefinementScope scope) {
+  if (std::exchange(m_scope, scope) != scope) emit changed();
+}
+
+void PoseRefinement::setJudgedAt(std::optional<glm::dvec3> world) {
+  m_judgedAt = world;
+  emit changed();
+}
+
 void PoseRefinement::refine() {
   if (m_running || !m_session.currentFrame()) return;
-  std::vector<ResectionObservation> used;
-  for (const Observation& o : observations())
-    if (o.enabled) used.push_back({o.pixel, o.world, o.sigmaPx, o.name});
-  ResectionOptions options = m_options;
-  // The expected millimetres are wanted where the work is: at the middle of the observed points.
+  RefineTask task;
+  task.project = m_session.project();
+  task.freedom = m_freedom;
+  task.frame = m_session.currentFrame()->name;
+  Project used = *task.project;
+  std::erase_if(used.observations, [&](const Observation& o) {
+    const bool elsewhere = m_scope == RefinementScope::Frame && o.frame != m_session.frame();
+    // One frame alone cannot place an unknown point.
+    const bool loose = m_scope == RefinementScope::Frame && o.kind == ObservedKind::Tie;
+    return !o.enabled || elsewhere || loose || !used.findFrame(o.frame);
+  });
+  task.rows = observationRowsOf(used);
   glm::dvec3 middle(0);
-  for (const auto& o : used) middle += o.world / static_cast<double>(used.size());
-  if (!used.empty()) options.at = {middle};
-  const FrameId frame = m_session.frame();
-  const auto project = m_session.project();
+  for (const Observation& o : used.observations) {
+    task.ids.push_back(o.id);
+    middle += o.world / static_cast<double>(used.observations.size());
+  }
+  // The expected millimetres are wanted where the work is.
+  task.judgedAt = m_judgedAt.value_or(middle);
+  const QString name = m_scope == RefinementScope::Frame ? tr("Refine pose of %1").arg(text(task.frame)) : tr("Refine poses");
   m_running = true;
   emit changed();
   m_session.jobs().run(
-      tr("Refining the pose of %1").arg(text(m_session.currentFrame()->name)),
-      [project, frame, used, options](const Progress&) -> Result<RefineOutcome> {
-        Project copy = *project;
-        auto summary = refineFrame(copy, frame, used, options, false);
-        if (!summary) return fail(summary.error());
-        return RefineOutcome{std::move(*summary), *copy.findFrame(frame)};
-      },
-      [this, frame](Result<RefineOutcome> outcome) {
+      name, [task](const Progress& progress) { return run(task, progress); },
+      [this, project = task.project, name](Result<RefineOutcome> outcome) {
         m_running = false;
         if (!outcome) {
           m_session.messages().error(outcome.error());
-        } else if (frame == m_session.frame()) {
+        } else if (m_session.project() == project) {
           m_summary = std::move(outcome->summary);
-          if (m_summary->converged) {
-            m_candidate = std::move(outcome->frame);
-            m_session.setCandidatePose(m_candidate->cameraFromWorld);
-          }
+          m_frameNames = std::move(outcome->frameNames);
+          m_outliers = std::move(outcome->outliers);
+          if (m_summary->converged) propose(outcome->project, name);
         }
         emit changed();
       });
 }
 
+void PoseRefinement::propose(std::shared_ptr<const Project> candidate, const QString& name) {
+  m_candidate = std::move(candidate);
+  m_candidateName = name;
+  showCandidate();
+}
+
+void PoseRefinement::showCandidate() {
+  const Frame* frame = m_candidate ? m_candidate->findFrame(m_session.frame()) : nullptr;
+  const Frame* shown = m_session.currentFrame();
+  const auto same = [](const std::optional<RigidTransform>& a, const std::optional<RigidTransform>& b) {
+    return a && b && a->rotation == b->rotation && a->translation == b->translation;
+  };
+  const bool differs = frame && shown && frame->cameraFromWorld && !same(frame->cameraFromWorld, shown->cameraFromWorld);
+  m_session.setCandidatePose(differs ? frame->cameraFromWorld : std::nullopt);
+  emit changed();
+}
+
 void PoseRefinement::accept() {
   if (!m_candidate) return;
-  const Frame candidate = *std::exchange(m_candidate, std::nullopt);
+  const auto candidate = std::exchange(m_candidate, nullptr);
   m_session.setCandidatePose(std::nullopt);
-  m_session.change(tr("Refine pose of %1").arg(text(candidate.name)), [&](Project& project) {
-    if (Frame* frame = project.findFrame(candidate.id)) *frame = candidate;
+  m_session.change(m_candidateName, [&](Project& project) {
+    // Poses and calibrations alone: annotations and observations may have changed since.
+    for (const Frame& better : candidate->frames)
+      if (Frame* frame = project.findFrame(better.id)) {
+        frame->cameraFromWorld = better.cameraFromWorld;
+        frame->originalCameraFromWorld = better.originalCameraFromWorld;
+        frame->poseSource = better.poseSource;
+        frame->quality = better.quality;
+      }
+    project.cameras = candidate->cameras;
   });
   emit changed();
 }
 
 void PoseRefinement::drop() {
-  m_candidate.reset();
-  m_summary.reset();
+  forget();
   m_session.setCandidatePose(std::nullopt);
-  emit changed();
 }
 
 void PoseRefinement::forget() {
   m_candidate.reset();
   m_summary.reset();
+  m_outliers.clear();
   emit changed();
 }
 
 std::optional<glm::dvec2> PoseRefinement::residual(const Observation& observation) const {
-  const Frame* frame = m_session.currentFrame();
-  const CameraRecord* camera = m_session.currentCamera();
-  if (!frame || !camera) return std::nullopt;
-  const auto& pose = m_session.candidatePose() ? m_session.candidatePose() : frame->cameraFromWorld;
-  if (!pose) return std::nullopt;
-  const auto pixel = camera->camera.project(*pose * observation.world);
+  const Project& project = m_candidate ? *m_candidate : *m_session.project();
+  const Frame* frame = project.findFrame(observation.frame);
+  const CameraRecord* camera = frame ? project.findCamera(frame->camera) : nullptr;
+  if (!camera || !frame->cameraFromWorld) return std::nullopt;
+  const auto pixel = fittedPixel(camera->camera, *frame->cameraFromWorld, observation);
   if (!pixel) return std::nullopt;
   return *pixel - observation.pixel;
 }

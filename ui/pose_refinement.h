@@ -4,37 +4,57 @@
 #pragma once
 
 #include <optional>
+#include <set>
 
 #include <QObject>
 
 #include "app/jobs.h"
+#include "app/refine_network.h"
 #include "ui/session.h"
 
 namespace alidade {
 
-/// The refinement of the current frame's pose: its observations (kept in the project), the options,
-/// and the candidate pose until it is accepted or dropped. The solve runs on a worker.
+/// What of the project is refined together.
+enum class RefinementScope { Frame, AllFrames };
+
+/// The refinement of poses from what was observed: its observations (kept in the project), the options, and the
+/// candidate poses until they are accepted or dropped. The solve runs on a worker.
 class PoseRefinement : public QObject {
   Q_OBJECT
 
  public:
   explicit PoseRefinement(Session& session, QObject* parent = nullptr);
 
-  /// Observations of the current frame, in order.
-  std::vector<Observation> observations() const;
-  void add(const glm::dvec2& pixel, const glm::dvec3& world, const QString& name);
+  /// Those of the current frame, or of all frames; in order.
+  std::vector<Observation> observations(RefinementScope scope) const;
+  /// Takes frame, id and, where it has none, a name from the session.
+  void add(Observation observation);
   void remove(ObservationId id);
   void setEnabled(ObservationId id, bool enabled);
+  void setHeldOut(ObservationId id, bool heldOut);
+  /// Looks for an observed point in all other frames; what is found is one change.
+  void matchInOtherFrames(ObservationId id);
 
-  ResectionOptions& options() { return m_options; }
+  RefinementScope scope() const { return m_scope; }
+  void setScope(RefinementScope scope);
+  NetworkFreedom& freedom() { return m_freedom; }
+  /// The object point for which the expected error is wanted; without one, the middle of the observed points.
+  void setJudgedAt(std::optional<glm::dvec3> world);
+  const std::optional<glm::dvec3>& judgedAt() const { return m_judgedAt; }
+
   void refine();
   bool running() const { return m_running; }
-  bool hasCandidate() const { return m_candidate.has_value(); }
+  bool hasCandidate() const { return m_candidate != nullptr; }
   void accept();
   void drop();
 
-  const std::optional<ResectionSummary>& summary() const { return m_summary; }
-  /// Projected - observed at the pose now shown; nothing where the point is not seen.
+  /// A project with better poses, made elsewhere and not yet accepted: as a refinement's own.
+  void propose(std::shared_ptr<const Project> candidate, const QString& name);
+
+  const std::optional<NetworkSummary>& summary() const { return m_summary; }
+  const std::vector<std::string>& frameNames() const { return m_frameNames; }  ///< of the summary's poses
+  bool isOutlier(ObservationId id) const { return m_outliers.contains(id); }
+  /// Fitted - observed at the pose now shown; nothing where it is not seen.
   std::optional<glm::dvec2> residual(const Observation& observation) const;
 
  signals:
@@ -42,11 +62,17 @@ class PoseRefinement : public QObject {
 
  private:
   void forget();
+  void showCandidate();
 
   Session& m_session;
-  ResectionOptions m_options;
-  std::optional<Frame> m_candidate;
-  std::optional<ResectionSummary> m_summary;
+  RefinementScope m_scope = RefinementScope::Frame;
+  NetworkFreedom m_freedom;
+  std::optional<glm::dvec3> m_judgedAt;
+  std::shared_ptr<const Project> m_candidate;
+  QString m_candidateName;
+  std::optional<NetworkSummary> m_summary;
+  std::vector<std::string> m_frameNames;
+  std::set<ObservationId> m_outliers;
   bool m_running = false;
 };
 

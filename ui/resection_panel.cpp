@@ -3,15 +3,30 @@
 
 #include "ui/resection_panel.h"
 
+#include <algorithm>
+
 #include <QHeaderView>
 #include <QKeyEvent>
+#include <QSortFilterProxyModel>
 
+#include "app/observing.h"
 #include "geometry/angle.h"
+#include "targets/mark.h"
 #include "ui/format.h"
+#include "ui/observation_model.h"
+#include "ui/value_slider.h"
 #include "ui/view_tool.h"
 #include "ui_resection_panel.h"
 
 namespace alidade {
+
+namespace {
+
+constexpr double kGrabPx = 14.0;         // screen pixels around a corner or an edge of the design
+constexpr double kLeastSigmaPx = 0.1;    // what a mark is good for once lens and light have their say
+constexpr double kScanSigmaM = 0.003;
+
+}  // namespace
 
 ResectionPanel::ResectionPanel(Session& session, PoseRefinement& refinement, OverlayView& view,
                                QWidget* parent)
@@ -19,31 +34,38 @@ ResectionPanel::ResectionPanel(Session& session, PoseRefinement& refinement, Ove
       m_session(session),
       m_refinement(refinement),
       m_view(view),
-      m_form(std::make_unique<Ui::ResectionPanelForm>()) {
+      m_form(std::make_unique<Ui::ResectionPanelForm>()),
+      m_model(new ObservationModel(session, refinement, this)),
+      m_sorted(new QSortFilterProxyModel(this)) {
   m_form->setupUi(this);
-  QTableWidget* table = m_form->observationTable;
-  table->setColumnCount(4);
-  table->setHorizontalHeaderLabels({tr("Point"), tr("u, v"), tr("Δu, Δv"), tr("px")});
+  m_sorted->setSourceModel(m_model);
+  m_sorted->setSortRole(ObservationModel::kSortRole);
+  m_sorted->setDynamicSortFilter(true);
+  QTableView* table = m_form->observationTable;
+  table->setModel(m_sorted);
+  table->sortByColumn(-1, Qt::AscendingOrder);  // as they were observed, until a header is clicked
   table->verticalHeader()->setVisible(false);
   table->verticalHeader()->setDefaultSectionSize(22);
   table->horizontalHeader()->setSectionResizeMode(QHeaderView::ResizeToContents);
-  table->horizontalHeader()->setSectionResizeMode(0, QHeaderView::Stretch);
-  table->setShowGrid(false);
   table->setMinimumHeight(110);
   table->installEventFilter(this);
-  connect(table, &QTableWidget::itemChanged, this, [this](QTableWidgetItem* item) {
-    if (m_refreshing || item->column() != 0) return;
-    m_refinement.setEnabled(m_rows[static_cast<std::size_t>(item->row())], item->checkState() == Qt::Checked);
-  });
+  connect(table->selectionModel(), &QItemSelectionModel::selectionChanged, this, &ResectionPanel::refresh);
+  m_scale = new ValueSlider(tr("Residuals drawn"), QStringLiteral("measure"), {1, 200, 10, true, 1, 0, QStringLiteral("×")});
+  m_scale->setObjectName(QStringLiteral("residualScale"));
+  m_scale->setToolTip(tr("How much longer than true the residual vectors are drawn. Hold V to hide them"));
+  m_form->outer->insertWidget(m_form->outer->indexOf(table) + 1, m_scale);
   connect(m_form->pick, &QPushButton::clicked, this, &ResectionPanel::startPick);
+  connect(m_form->match, &QPushButton::clicked, this, [this] { m_refinement.matchInOtherFrames(selected()); });
+  connect(m_form->judge, &QPushButton::clicked, this, [this] {
+    pickScanPoint(tr("Click the object point that the millimetres are wanted for. Esc leaves"), [this](const glm::dvec3& world) {
+      m_refinement.setJudgedAt(world);
+      endPick();
+    });
+  });
   connect(m_form->refine, &QPushButton::clicked, &m_refinement, &PoseRefinement::refine);
   connect(m_form->accept, &QPushButton::clicked, &m_refinement, &PoseRefinement::accept);
   connect(m_form->drop, &QPushButton::clicked, &m_refinement, &PoseRefinement::drop);
-  connect(m_form->lockPosition, &QCheckBox::clicked, this, [this](bool on) {
-    for (QCheckBox* box : {m_form->lockE, m_form->lockN, m_form->lockH}) box->setChecked(on);
-  });
-  for (QCheckBox* box : {m_form->lockE, m_form->lockN, m_form->lockH, m_form->lockAttitude})
-    connect(box, &QCheckBox::toggled, this, &ResectionPanel::applyLocks);
+  connectOptions();
   connect(&m_refinement, &PoseRefinement::changed, this, &ResectionPanel::refresh);
   connect(&session, &Session::structureChanged, this, &ResectionPanel::refillPoints);
   connect(&session, &Session::pictureReady, this, &ResectionPanel::refresh);
@@ -53,57 +75,134 @@ ResectionPanel::ResectionPanel(Session& session, PoseRefinement& refinement, Ove
 
 ResectionPanel::~ResectionPanel() = default;
 
-void ResectionPanel::refillPoints() {
-  m_points.clear();
-  m_form->point->clear();
-  m_points.push_back({tr("Point of the scan"), std::nullopt});
-  for (const ControlPoint& point : m_session.project()->controlPoints)
-    m_points.push_back({text(point.name), point.position});
-  for (const StakePoint& point : m_session.project()->stakePoints)
-    m_points.push_back({text(point.name), point.position});
-  for (const KnownPoint& point : m_points) m_form->point->addItem(point.name);
-  if (m_points.size() > 1) m_form->point->setCurrentIndex(1);
+void ResectionPanel::connectOptions() {
+  for (QCheckBox* box : {m_form->lockE, m_form->lockN, m_form->lockH, m_form->lockX, m_form->lockY, m_form->lockZ,
+                         m_form->freeFocal, m_form->freePrincipal, m_form->freeDistortion})
+    connect(box, &QCheckBox::toggled, this, &ResectionPanel::applyOptions);
+  connect(m_form->scope, &QComboBox::currentIndexChanged, this,
+          [this](int index) { m_refinement.setScope(index == 0 ? RefinementScope::Frame : RefinementScope::AllFrames); });
+  connect(m_scale, &ValueSlider::changed, this, [this](double value, bool dragging) {
+    DisplaySettings display = m_session.display();
+    display.residualScale = value;
+    m_session.setDisplay(display, dragging);
+  });
+  connect(&m_session, &Session::displayChanged, this, [this] { m_scale->setValue(m_session.display().residualScale); });
 }
 
-void ResectionPanel::applyLocks() {
-  ResectionOptions& options = m_refinement.options();
-  options.lockPosition = {m_form->lockE->isChecked(), m_form->lockN->isChecked(), m_form->lockH->isChecked()};
-  options.lockAttitude = m_form->lockAttitude->isChecked();
-  m_form->lockPosition->setChecked(options.lockPosition[0] && options.lockPosition[1] &&
-                                   options.lockPosition[2]);
+void ResectionPanel::refillPoints() {
+  m_choices.clear();
+  m_form->point->clear();
+  const auto offer = [this](Source source, const QString& name, Observation observation = {}) {
+    m_choices.push_back({source, std::move(observation)});
+    m_form->point->addItem(name);
+  };
+  offer(Source::Scan, tr("Point of the scan"));
+  offer(Source::DesignCorner, tr("Corner of the design"));
+  offer(Source::DesignEdge, tr("Edge of the design"));
+  const auto known = [&](const std::string& name, const glm::dvec3& world, double sigmaM) {
+    Observation observation;
+    observation.name = name, observation.world = world, observation.sigmaM = sigmaM;
+    offer(Source::Known, text(name), observation);
+  };
+  for (const ControlPoint& point : m_session.project()->controlPoints) known(point.name, point.position, point.sigmaM);
+  for (const StakePoint& point : m_session.project()->stakePoints) known(point.name, point.position, 0);
+  constexpr int kFirstKnown = 3;
+  if (m_form->point->count() > kFirstKnown) m_form->point->setCurrentIndex(kFirstKnown);
+}
+
+void ResectionPanel::applyOptions() {
+  NetworkFreedom& freedom = m_refinement.freedom();
+  freedom.lockPosition = {m_form->lockE->isChecked(), m_form->lockN->isChecked(), m_form->lockH->isChecked()};
+  freedom.lockAttitude = {m_form->lockX->isChecked(), m_form->lockY->isChecked(), m_form->lockZ->isChecked()};
+  freedom.focal = m_form->freeFocal->isChecked();
+  freedom.principalPoint = m_form->freePrincipal->isChecked();
+  freedom.distortion = m_form->freeDistortion->isChecked();
+}
+
+ObservationId ResectionPanel::selected() const {
+  const QModelIndexList rows = m_form->observationTable->selectionModel()->selectedRows();
+  return rows.isEmpty() ? ObservationId() : m_model->idAt(m_sorted->mapToSource(rows.front()).row());
 }
 
 void ResectionPanel::startPick() {
   const int index = m_form->point->currentIndex();
   if (index < 0) return;
-  const KnownPoint point = m_points[static_cast<std::size_t>(index)];
-  point.world ? pickPixel(point) : pickScanPoint();
+  const Choice& choice = m_choices[static_cast<std::size_t>(index)];
+  switch (choice.source) {
+    case Source::Known:
+      return pickPixel(choice.observation);
+    case Source::Scan:
+      return pickScanPoint(tr("Click the scan point where the picture shows it now, or pick it in 3D. Esc leaves"),
+                           [this](const glm::dvec3& world) { useWorldPoint(world); });
+    case Source::DesignCorner:
+    case Source::DesignEdge:
+      return pickDesign(choice.source);
+  }
 }
 
 void ResectionPanel::useWorldPoint(const glm::dvec3& world) {
-  pickPixel({tr("S%1").arg(m_refinement.observations().size() + 1), world});
+  Observation observation;
+  observation.kind = ObservedKind::Scan;
+  observation.world = world;
+  observation.sigmaM = kScanSigmaM;
+  observation.name = freePointName(*m_session.project(), "S");
+  pickPixel(observation);
 }
 
-void ResectionPanel::pickScanPoint() {
+void ResectionPanel::borrow(const QString& hint, bool wantsScan,
+                            const std::function<void(const glm::dvec2&, const std::optional<glm::dvec3>&)>& picked) {
   emit toolBorrowed();
-  m_view.setTool(makePointTool(
-      tr("Click the scan point where the picture shows it now, or pick it in 3D. Esc leaves"), true,
-      [this](const glm::dvec2&, const std::optional<glm::dvec3>& world) { useWorldPoint(*world); },
-      [this] { endPick(); }));
+  m_view.setTool(makePointTool(hint, wantsScan, picked, [this] { endPick(); }));
 }
 
-void ResectionPanel::pickPixel(const KnownPoint& point) {
-  emit toolBorrowed();
-  m_view.setTool(makePointTool(
-      tr("Click where the picture really shows %1. Esc leaves").arg(point.name), false,
-      [this, point](const glm::dvec2& raw, const std::optional<glm::dvec3>&) {
-        m_refinement.add(raw, *point.world, point.name);
-        const int next = m_form->point->currentIndex() + 1;
-        const bool known = m_form->point->currentIndex() > 0;
-        if (known && next < m_form->point->count()) m_form->point->setCurrentIndex(next);
-        endPick();
-      },
-      [this] { endPick(); }));
+void ResectionPanel::pickScanPoint(const QString& hint, const std::function<void(const glm::dvec3&)>& picked) {
+  borrow(hint, true, [picked](const glm::dvec2&, const std::optional<glm::dvec3>& world) { picked(*world); });
+}
+
+void ResectionPanel::pickDesign(Source source) {
+  const bool edge = source == Source::DesignEdge;
+  const QString hint = edge ? tr("Click the design's edge where it is drawn now. Esc leaves")
+                            : tr("Click the design's corner where it is drawn now. Esc leaves");
+  borrow(hint, false, [this, edge](const glm::dvec2& raw, const std::optional<glm::dvec3>&) {
+    const FrameDescription* frame = m_view.probe().description();
+    const double radius = kGrabPx / m_view.zoom();
+    const auto snapped = !frame ? std::nullopt : edge ? designEdgeAt(*frame, raw, radius) : designCornerAt(*frame, raw, radius);
+    if (!snapped) return m_view.flash(edge ? tr("No edge of the design is drawn here") : tr("No corner of the design is drawn here"));
+    Observation observation;
+    observation.kind = edge ? ObservedKind::Edge : ObservedKind::Control;
+    observation.world = snapped->world;
+    observation.edgeEnd = snapped->edgeEnd;
+    observation.name = freePointName(*m_session.project(), edge ? "E" : "D");
+    pickPixel(observation);
+  });
+}
+
+void ResectionPanel::pickPixel(const Observation& what) {
+  const bool edge = what.kind == ObservedKind::Edge;
+  const QString hint = edge ? tr("Click places along the edge in the picture, two or more. Esc ends")
+                            : tr("Click where the picture really shows %1. Esc leaves").arg(text(what.name));
+  borrow(hint, false, [this, what, edge](const glm::dvec2& raw, const std::optional<glm::dvec3>&) {
+    Observation seen = what;
+    seen.pixel = raw;
+    if (!edge && m_form->snap->isChecked()) snap(seen);
+    m_refinement.add(seen);
+    if (edge) return;
+    const int next = m_form->point->currentIndex() + 1;
+    const bool known = m_choices[static_cast<std::size_t>(m_form->point->currentIndex())].source == Source::Known;
+    if (known && next < m_form->point->count()) m_form->point->setCurrentIndex(next);
+    endPick();
+  });
+}
+
+void ResectionPanel::snap(Observation& observation) const {
+  const ColourImage* picture = m_view.probe().rawPicture();
+  if (!picture) return;
+  const auto mark = refineMark(*picture, observation.pixel);
+  if (!mark) return m_view.flash(tr("Kept where it was clicked. %1").arg(text(mark.error().what)));
+  observation.pixel = mark->pixel;
+  observation.sigmaPx = std::max(kLeastSigmaPx, mark->sigmaPx);
+  m_view.flash(mark->shape == MarkShape::Corner ? tr("Snapped to the corner, ± %1 px").arg(observation.sigmaPx, 0, 'f', 2)
+                                                : tr("Snapped to the target's centre, ± %1 px").arg(observation.sigmaPx, 0, 'f', 2));
 }
 
 void ResectionPanel::endPick() {
@@ -113,12 +212,11 @@ void ResectionPanel::endPick() {
 
 bool ResectionPanel::eventFilter(QObject* watched, QEvent* event) {
   if (watched == m_form->observationTable) {
-    const int row = m_form->observationTable->currentRow();
     const bool override = event->type() == QEvent::ShortcutOverride;
-    if ((override || event->type() == QEvent::KeyPress) && row >= 0) {
+    if ((override || event->type() == QEvent::KeyPress) && selected()) {
       const int key = static_cast<QKeyEvent*>(event)->key();
       if (key == Qt::Key_Delete || key == Qt::Key_Backspace) {
-        override ? event->accept() : m_refinement.remove(m_rows[static_cast<std::size_t>(row)]);
+        override ? event->accept() : m_refinement.remove(selected());
         return true;
       }
     }
@@ -127,38 +225,21 @@ bool ResectionPanel::eventFilter(QObject* watched, QEvent* event) {
 }
 
 void ResectionPanel::refresh() {
-  m_refreshing = true;
-  const auto observations = m_refinement.observations();
-  QTableWidget* table = m_form->observationTable;
-  table->setRowCount(static_cast<int>(observations.size()));
-  m_rows.clear();
-  int enabled = 0;
-  for (std::size_t i = 0; i < observations.size(); ++i) {
-    const Observation& o = observations[i];
-    m_rows.push_back(o.id);
-    enabled += o.enabled;
-    const auto residual = m_refinement.residual(o);
-    const QString cells[] = {
-        text(o.name), QStringLiteral("%1, %2").arg(o.pixel.x, 0, 'f', 1).arg(o.pixel.y, 0, 'f', 1),
-        residual ? QStringLiteral("%1, %2").arg(residual->x, 0, 'f', 1).arg(residual->y, 0, 'f', 1)
-                 : tr("not seen"),
-        residual ? QString::number(glm::length(*residual), 'f', 2) : QString()};
-    for (int c = 0; c < 4; ++c) {
-      auto* item = new QTableWidgetItem(cells[c]);
-      item->setFlags(Qt::ItemIsEnabled | Qt::ItemIsSelectable |
-                     (c == 0 ? Qt::ItemIsUserCheckable : Qt::NoItemFlags));
-      if (c == 0) item->setCheckState(o.enabled ? Qt::Checked : Qt::Unchecked);
-      if (c > 0) item->setTextAlignment(Qt::AlignRight | Qt::AlignVCenter);
-      table->setItem(static_cast<int>(i), c, item);
-    }
-  }
+  const auto observations = m_refinement.observations(m_refinement.scope());
+  const auto used = std::count_if(observations.begin(), observations.end(),
+                                  [](const Observation& o) { return o.enabled && !o.heldOut; });
+  const bool all = m_refinement.scope() == RefinementScope::AllFrames;
+  m_form->observationTable->setColumnHidden(ObservationModel::FrameName, !all);
   m_form->pick->setEnabled(m_session.currentFrame() != nullptr);
-  m_form->refine->setEnabled(enabled > 0 && !m_refinement.running());
+  m_form->match->setEnabled(static_cast<bool>(selected()) && m_session.project()->frames.size() > 1);
+  m_form->judge->setEnabled(m_session.currentFrame() != nullptr);
+  m_form->refine->setEnabled(used > 0 && !m_refinement.running());
   m_form->refine->setText(m_refinement.running() ? tr("Refining…") : tr("Refine"));
   m_form->accept->setEnabled(m_refinement.hasCandidate());
   m_form->drop->setEnabled(m_refinement.hasCandidate());
+  const auto& at = m_refinement.judgedAt();
+  m_form->judgedAt->setText(at ? tr("Judged at %1").arg(formatWorld(*at)) : tr("Judged amid the points"));
   refreshSummary();
-  m_refreshing = false;
 }
 
 void ResectionPanel::refreshSummary() {
@@ -170,24 +251,44 @@ void ResectionPanel::refreshSummary() {
   QStringList lines;
   if (!summary->converged) {
     lines << tr("✕ Not refined: %1").arg(text(summary->reason));
-  } else {
-    lines << tr("✓ rms %1 px, σ₀ %2, %3 iterations")
-                 .arg(summary->rmsPx, 0, 'f', 2)
-                 .arg(summary->sigma0, 0, 'f', 2)
-                 .arg(summary->iterations);
-    lines << tr("Position ± %1, %2, %3")
-                 .arg(formatMillimetres(summary->positionStdM.x), formatMillimetres(summary->positionStdM.y),
-                      formatMillimetres(summary->positionStdM.z));
-    lines << tr("Attitude ± %1, %2, %3 mgon")
-                 .arg(gonFromRadians(summary->rotationStdRad.x) * 1000, 0, 'f', 1)
-                 .arg(gonFromRadians(summary->rotationStdRad.y) * 1000, 0, 'f', 1)
-                 .arg(gonFromRadians(summary->rotationStdRad.z) * 1000, 0, 'f', 1);
-    for (const ExpectedError& expected : summary->expected)
-      lines << tr("Overlay good to %1 mm among the points (95 %)").arg(expected.millimetres, 0, 'f', 1);
-    if (summary->outlierCount() > 0)
-      lines << tr("▲ %1 outliers: tick them off or pick them again").arg(summary->outlierCount());
-    if (m_refinement.hasCandidate()) lines << tr("Hold B to see the pose before.");
+    m_form->summary->setText(lines.join('\n'));
+    return;
   }
+  lines << tr("✓ σ₀ %1, redundancy %2, %3 iterations")
+               .arg(summary->sigma0, 0, 'f', 2)
+               .arg(summary->redundancy)
+               .arg(summary->iterations);
+  for (const ResidualGroup& group : summary->groups)
+    if (std::isfinite(group.rmsPx))
+      lines << tr("%1%2: %3 px rms of %4")
+                   .arg(text(residualKindName(group.kind)), group.heldOut ? tr(", held out") : QString())
+                   .arg(group.rmsPx, 0, 'f', 2)
+                   .arg(group.count);
+  const Frame* frame = m_session.currentFrame();
+  const auto& names = m_refinement.frameNames();
+  const auto at = frame ? std::find(names.begin(), names.end(), frame->name) : names.end();
+  if (at != names.end() && static_cast<std::size_t>(at - names.begin()) < summary->poses.size()) {
+    const AdjustedPose& pose = summary->poses[static_cast<std::size_t>(at - names.begin())];
+    lines << tr("Position ± %1, %2, %3")
+                 .arg(formatMillimetres(pose.positionStdM.x), formatMillimetres(pose.positionStdM.y),
+                      formatMillimetres(pose.positionStdM.z));
+    lines << tr("95 % ellipse %1 by %2, height ± %3")
+                 .arg(formatMillimetres(pose.ellipse.semiMajorM), formatMillimetres(pose.ellipse.semiMinorM),
+                      formatMillimetres(pose.ellipse.heightM));
+    lines << tr("Attitude ± %1, %2, %3 mgon")
+                 .arg(gonFromRadians(pose.rotationStdRad.x) * 1000, 0, 'f', 1)
+                 .arg(gonFromRadians(pose.rotationStdRad.y) * 1000, 0, 'f', 1)
+                 .arg(gonFromRadians(pose.rotationStdRad.z) * 1000, 0, 'f', 1);
+  }
+  for (const ExpectedError& expected : summary->expected)
+    lines << (m_refinement.judgedAt() ? tr("Overlay good to %1 mm at the chosen point (95 %)")
+                                      : tr("Overlay good to %1 mm among the points (95 %)"))
+                 .arg(expected.millimetres, 0, 'f', 1);
+  for (const std::string& pair : summary->correlations) lines << tr("▲ %1").arg(text(pair));
+  for (const std::string& warning : summary->warnings) lines << tr("▲ %1").arg(text(warning));
+  if (const int outliers = summary->outlierCount(); outliers > 0)
+    lines << tr("▲ %1 outliers took no part: leave them out or pick them again").arg(outliers);
+  if (m_refinement.hasCandidate()) lines << tr("Hold B to see the pose before.");
   m_form->summary->setText(lines.join('\n'));
 }
 

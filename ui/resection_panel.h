@@ -10,13 +10,18 @@
 #include "ui/overlay_view.h"
 #include "ui/pose_refinement.h"
 
+class QSortFilterProxyModel;
+
 namespace Ui {
 class ResectionPanelForm;
 }
 
 namespace alidade {
 
-/// Pairs of known points and their places in the picture; the solve's result and what it is worth.
+class ObservationModel;
+class ValueSlider;
+
+/// What was observed and where, the solve's options, its result and what it is worth.
 class ResectionPanel : public QWidget {
   Q_OBJECT
 
@@ -34,26 +39,36 @@ class ResectionPanel : public QWidget {
   bool eventFilter(QObject* watched, QEvent* event) override;
 
  private:
-  struct KnownPoint {
-    QString name;
-    std::optional<glm::dvec3> world;  ///< none: to be picked from the scan first
+  /// What can be observed: a known point, or something to be picked first in the scan or in the design.
+  enum class Source { Known, Scan, DesignCorner, DesignEdge };
+  struct Choice {
+    Source source;
+    Observation observation;
   };
+  void connectOptions();
   void refillPoints();
   void refresh();
   void refreshSummary();
   void startPick();
-  void pickScanPoint();
-  void pickPixel(const KnownPoint& point);
+  void pickScanPoint(const QString& hint, const std::function<void(const glm::dvec3&)>& picked);
+  void pickDesign(Source source);
+  void pickPixel(const Observation& what);
+  /// The click, or the mark next to it where that is wanted and there is one.
+  void snap(Observation& observation) const;
+  void borrow(const QString& hint, bool wantsScan,
+              const std::function<void(const glm::dvec2&, const std::optional<glm::dvec3>&)>& picked);
   void endPick();
-  void applyLocks();
+  void applyOptions();
+  ObservationId selected() const;
 
   Session& m_session;
   PoseRefinement& m_refinement;
   OverlayView& m_view;
   std::unique_ptr<Ui::ResectionPanelForm> m_form;
-  std::vector<KnownPoint> m_points;
-  std::vector<ObservationId> m_rows;
-  bool m_refreshing = false;
+  std::vector<Choice> m_choices;
+  ObservationModel* m_model;
+  QSortFilterProxyModel* m_sorted;
+  ValueSlider* m_scale;
 };
 
 }  // namespace alidade

@@ -17,7 +17,8 @@ CREATE TABLE display (
   hidden, design_opacity, design_edges, design_faces, grayscale_image, grayscale_design,
   light_x, light_y, light_z, ambient, diffuse, specular, shininess,
   stake_points, annotations, labels,
-  subdivision_error_px, depth_tolerance_m
+  residual_scale, subdivision_error_px,
+  depth_tolerance_m
 );
 
 -- Since version 2. hidden_classes: ASPRS codes between blanks.

@@ -21,7 +21,7 @@ class Builder {
   Builder(const Project& project, const std::string& frame, const NetworkFreedom& freedom)
       : m_project(project), m_frame(frame), m_freedom(freedom) {}
 
-  Result<void> add(const ObservationRow& row);
+  Result<void> add(const ObservationRow& row, std::size_t index);
   NetworkRefinement take() { return std::move(m_made); }
 
  private:
@@ -64,7 +64,7 @@ Result<int> Builder::addFrame(FrameId id, const ObservationRow& row) {
   pose.name = frame.name;
   pose.bodyFromWorld = frame.cameraFromWorld;
   pose.timeSecs = frame.timeSecs;
-  for (int i = 0; i < 3; ++i) pose.locked[i] = m_freedom.lockPosition[i], pose.locked[3 + i] = m_freedom.lockAttitude;
+  for (int i = 0; i < 3; ++i) pose.locked[i] = m_freedom.lockPosition[i], pose.locked[3 + i] = m_freedom.lockAttitude[i];
   NetworkFrame made;
   made.name = frame.name;
   made.pose = static_cast<int>(m_made.network.poses.size());
@@ -97,7 +97,7 @@ Result<int> Builder::pointOf(const ObservationRow& row) {
   return at->second;
 }
 
-Result<void> Builder::add(const ObservationRow& row) {
+Result<void> Builder::add(const ObservationRow& row, std::size_t index) {
   Network& n = m_made.network;
   if (row.kind == ObservationKind::Surface || row.kind == ObservationKind::Depth) {
     const auto point = m_points.find(row.name);
@@ -115,6 +115,7 @@ Result<void> Builder::add(const ObservationRow& row) {
   if (!frame) return fail(frame.error());
   if (row.kind == ObservationKind::Edge) {
     n.edges.push_back({*frame, *row.world, *row.second, row.pixel, row.sigmaPx, row.heldOut, row.name});
+    m_made.edgeRows.push_back(index);
     return {};
   }
   if (row.kind == ObservationKind::Position) {
@@ -133,6 +134,7 @@ Result<void> Builder::add(const ObservationRow& row) {
   if (!added)
     return fail("'" + row.name + "' is observed twice in frame '" + n.frames[*frame].name + "'", row.where, "The other is at " + at->second + "; delete one");
   n.observations.push_back({*frame, *point, row.pixel, row.sigmaPx, row.heldOut});
+  m_made.observationRows.push_back(index);
   return {};
 }
 
@@ -155,8 +157,8 @@ ObservationKind kindOf(ObservedKind kind) {
 Result<NetworkRefinement> networkOf(const Project& project, const std::string& frame,
                                     const std::vector<ObservationRow>& rows, const NetworkFreedom& freedom) {
   Builder builder(project, frame, freedom);
-  for (const ObservationRow& row : rows)
-    if (const auto added = builder.add(row); !added) return fail(added.error());
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    if (const auto added = builder.add(rows[i], i); !added) return fail(added.error());
   return builder.take();
 }
 

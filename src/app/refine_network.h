@@ -14,8 +14,8 @@ namespace alidade {
 
 /// What may move of every frame and camera that is refined.
 struct NetworkFreedom {
-  std::array<bool, 3> lockPosition{};
-  bool lockAttitude = false;
+  std::array<bool, 3> lockPosition{};  ///< E N H of the camera's centre
+  std::array<bool, 3> lockAttitude{};  ///< rotation about the camera's x y z
   bool focal = false, principalPoint = false, distortion = false;
 };
 
@@ -24,6 +24,7 @@ struct NetworkRefinement {
   std::vector<FrameId> frames;      ///< one a NetworkFrame
   std::vector<CameraId> cameras;    ///< one a NetworkCamera
   Network network;
+  std::vector<std::size_t> observationRows, edgeRows;  ///< the row behind each of the network's observations and edges
 };
 
 /// Rows as a network over the project's frames; rows that name no frame belong to `frame`. Errors name the row: a frame

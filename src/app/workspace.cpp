@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <unordered_set>
 
+#include "app/observing.h"
 #include "app/pose_clock.h"
 #include "app/scan_loading.h"
 #include "io/reader_registry.h"
@@ -135,9 +136,10 @@ Result<FrameDescription> describeFrame(const Project& project, const LoadedData&
   description.selectedAnnotation = selection.annotation;
   for (const Observation& seen : project.observations) {
     if (seen.frame != frameId || !seen.enabled) continue;
-    if (const auto projected = alidade::project(camera->camera, description.shutter, description.cameraFromWorld * seen.world))
+    if (const auto projected = fittedPixel(camera->camera, description.shutter, description.cameraFromWorld, seen))
       description.residuals.push_back({seen.pixel, *projected, seen.name});
   }
+  description.residualScale = project.display.residualScale;
   description.display = project.display;
   return description;
 }

@@ -41,17 +41,20 @@ Result<void> applyFree(const std::string& list, NetworkFreedom& freedom) {
   return {};
 }
 
-Result<void> applyLocks(const std::string& list, ResectionOptions& options) {
+Result<void> applyLocks(const std::string& list, NetworkFreedom& freedom) {
   std::size_t start = 0;
   while (!list.empty() && start <= list.size()) {
     const auto comma = std::min(list.find(',', start), list.size());
     const std::string name = list.substr(start, comma - start);
-    if (name == "position") options.lockPosition = {true, true, true};
-    else if (name == "attitude") options.lockAttitude = true;
-    else if (name == "x" || name == "e") options.lockPosition[0] = true;
-    else if (name == "y" || name == "n") options.lockPosition[1] = true;
-    else if (name == "z" || name == "h") options.lockPosition[2] = true;
-    else return fail("'" + name + "' cannot be locked", "--lock", "Lock position, attitude, x, y or z");
+    if (name == "position") freedom.lockPosition.fill(true);
+    else if (name == "attitude") freedom.lockAttitude.fill(true);
+    else if (name == "x" || name == "e") freedom.lockPosition[0] = true;
+    else if (name == "y" || name == "n") freedom.lockPosition[1] = true;
+    else if (name == "z" || name == "h") freedom.lockPosition[2] = true;
+    else if (name == "rx") freedom.lockAttitude[0] = true;
+    else if (name == "ry") freedom.lockAttitude[1] = true;
+    else if (name == "rz") freedom.lockAttitude[2] = true;
+    else return fail("'" + name + "' cannot be locked", "--lock", "Lock position, attitude, one of x, y, z, or one rotation of rx, ry, rz");
     start = comma + 1;
   }
   return {};
@@ -161,6 +164,8 @@ Answer answerOf(Json json, std::string text, bool converged) {
 
 /// One frame, known points and nothing else: a resection.
 bool isResection(const std::vector<ObservationRow>& rows, const std::string& frame, const NetworkFreedom& freedom) {
+  const auto& [rx, ry, rz] = freedom.lockAttitude;
+  if (rx != ry || ry != rz) return false;
   if (frame.empty() || freedom.focal || freedom.principalPoint || freedom.distortion) return false;
   return std::all_of(rows.begin(), rows.end(), [&](const ObservationRow& row) {
     return (row.kind == ObservationKind::Control || row.kind == ObservationKind::Scan) && !row.heldOut &&
@@ -207,9 +212,9 @@ Result<Answer> runPictures(const Arguments& arguments, const ResectionOptions& l
 Result<Answer> run(const Arguments& arguments, const Progress& progress) {
   ResectionOptions options;
   NetworkFreedom freedom;
-  if (auto done = applyLocks(arguments.lock, options); !done) return fail(done.error());
+  if (auto done = applyLocks(arguments.lock, freedom); !done) return fail(done.error());
   if (auto done = applyFree(arguments.free, freedom); !done) return fail(done.error());
-  freedom.lockPosition = options.lockPosition, freedom.lockAttitude = options.lockAttitude;
+  options.lockPosition = freedom.lockPosition, options.lockAttitude = freedom.lockAttitude[0];
   if (arguments.automatic || arguments.sequence) return runPictures(arguments, options, progress);
   for (const std::string& text : arguments.at) {
     auto point = parsePoint(text);
@@ -243,8 +248,8 @@ void addRefine(Verbs& verbs) {
   command->add_option("--observations", arguments->observations,
                       "CSV: u,v,e,n,h[,sigma_px][,name][,frame][,kind][,use][,sigma_m][,e2,n2,h2][,depth_m]; "
                       "without it, those that the project keeps");
-  command->add_option("--lock", arguments->lock, "Of position,attitude,x,y,z")
-      ->check(checkedBy([](const std::string& list) { ResectionOptions ignored; return applyLocks(list, ignored); }, "LIST"));
+  command->add_option("--lock", arguments->lock, "Of position,attitude,x,y,z,rx,ry,rz (rotations about the camera's axes)")
+      ->check(checkedBy([](const std::string& list) { NetworkFreedom ignored; return applyLocks(list, ignored); }, "LIST"));
   command->add_option("--free", arguments->free, "Of focal,principal-point,distortion, beside the poses")
       ->check(checkedBy([](const std::string& list) { NetworkFreedom ignored; return applyFree(list, ignored); }, "LIST"));
   command->add_option("--at", arguments->at, "E,N,H where the expected error is wanted")

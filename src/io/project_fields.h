@@ -120,6 +120,7 @@ void visit(V& v, DisplaySettings& d) {
   v("stake_points", d.stakePoints);
   v("annotations", d.annotations);
   v("labels", d.labels);
+  v("residual_scale", d.residualScale);
   v("subdivision_error_px", d.subdivisionErrorPx);
   v("depth_tolerance_m", d.depthToleranceM);
 }

@@ -45,6 +45,7 @@ struct DisplaySettings {
   bool stakePoints = true;
   bool annotations = true;
   bool labels = true;
+  double residualScale = 10.0;  ///< residual vectors of observations are drawn so many times as long
 
   double subdivisionErrorPx = 0.05;  ///< largest sag of a drawn edge against the lens's curve
   double depthToleranceM = 0.02;     ///< scan and design closer than this count as the same surface

@@ -2,11 +2,17 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include <QAction>
+#include <QCheckBox>
 #include <QComboBox>
+#include <QHeaderView>
+#include <QLabel>
 #include <QPushButton>
-#include <QTableWidget>
+#include <QTableView>
 
+#include "app/observing.h"
+#include "ui/observation_model.h"
 #include "ui/pose_refinement.h"
+#include "ui/value_slider.h"
 #include "ui/window_fixture.h"
 
 namespace alidade::test {
@@ -35,7 +41,7 @@ std::vector<Seen> controlPointsInView(const Project& project, const Frame& frame
 TEST_F(OpenWindow, APoseIsRefinedFromClickedControlPointsAcceptedAndUndone) {
   window->actions()[Command::Resection]->trigger();
   auto* panel = window->findChild<QWidget*>("ResectionPanelForm");
-  if (!panel) panel = window->findChild<QTableWidget*>("observationTable")->parentWidget();
+  if (!panel) panel = window->findChild<QTableView*>("observationTable")->parentWidget();
   auto* points = panel->findChild<QComboBox*>("point");
   auto* pick = panel->findChild<QPushButton*>("pick");
   auto* refine = panel->findChild<QPushButton*>("refine");
@@ -59,7 +65,8 @@ TEST_F(OpenWindow, APoseIsRefinedFromClickedControlPointsAcceptedAndUndone) {
         << point.name.toStdString();
     ASSERT_TRUE(settle());
   }
-  EXPECT_EQ(panel->findChild<QTableWidget*>("observationTable")->rowCount(), static_cast<int>(clicked));
+  auto* table = panel->findChild<QTableView*>("observationTable");
+  EXPECT_EQ(table->model()->rowCount(), static_cast<int>(clicked));
 
   QTest::mouseClick(refine, Qt::LeftButton);
   ASSERT_TRUE(waitFor([&] { return accept->isEnabled(); }, 20'000));
@@ -75,6 +82,174 @@ TEST_F(OpenWindow, APoseIsRefinedFromClickedControlPointsAcceptedAndUndone) {
   window->actions()[Command::Undo]->trigger();
   EXPECT_EQ(session().currentFrame()->poseSource, before.poseSource);
   EXPECT_EQ(session().currentFrame()->cameraFromWorld->translation, before.cameraFromWorld->translation);
+}
+
+namespace {
+
+class ResectionWindow : public OpenWindow {
+ protected:
+  void SetUp() override {
+    OpenWindow::SetUp();
+    if (HasFatalFailure()) return;
+    window->actions()[Command::Resection]->trigger();
+    ASSERT_TRUE(settle());
+    table = window->findChild<QTableView*>("observationTable");
+    points = window->findChild<QComboBox*>("point");
+    pick = window->findChild<QPushButton*>("pick");
+    window->findChild<QCheckBox*>("snap")->setChecked(false);
+    ASSERT_TRUE(table && points && pick);
+  }
+  std::size_t count() { return session().project()->observations.size(); }
+  const Observation& last() { return session().project()->observations.back(); }
+  /// Clicks each control point in view where the pose shows it, off by `error(i)`.
+  std::size_t observeControlPoints(const std::function<glm::dvec2(std::size_t)>& error) {
+    const auto seen = controlPointsInView(*session().project(), *session().currentFrame());
+    for (std::size_t i = 0; i < seen.size(); ++i) {
+      const std::size_t before = count();
+      points->setCurrentIndex(points->findText(seen[i].name));
+      QTest::mouseClick(pick, Qt::LeftButton);
+      click(seen[i].pixel + error(i));
+      if (!waitFor([&] { return count() == before + 1; }, 10'000) || !settle()) return 0;
+    }
+    return seen.size();
+  }
+  /// A design edge of some length, well inside the picture: its ends and their pixels.
+  struct DrawnEdge {
+    glm::dvec3 a, b;
+    glm::dvec2 pixelA, pixelB;
+  };
+  std::optional<DrawnEdge> drawnEdge() {
+    const FrameDescription* frame = view().probe().description();
+    for (const DesignLayer& layer : frame->designs)
+      for (const auto& edge : layer.model->edges) {
+        const DrawnEdge e{layer.model->world(edge[0]), layer.model->world(edge[1]), {}, {}};
+        const auto a = view().probe().project(e.a), b = view().probe().project(e.b);
+        const auto inside = [&](const auto& p) {
+          return p && p->x > 20 && p->y > 20 && p->x < frame->camera.width() - 20 && p->y < frame->camera.height() - 20;
+        };
+        if (inside(a) && inside(b) && glm::length(*a - *b) > 40) return DrawnEdge{e.a, e.b, *a, *b};
+      }
+    return std::nullopt;
+  }
+
+  QTableView* table = nullptr;
+  QComboBox* points = nullptr;
+  QPushButton* pick = nullptr;
+};
+
+}  // namespace
+
+TEST_F(ResectionWindow, ACornerOfTheDesignIsObserved) {
+  const auto edge = drawnEdge();
+  ASSERT_TRUE(edge);
+  const std::size_t before = count();
+  points->setCurrentIndex(points->findText("Corner of the design"));
+  QTest::mouseClick(pick, Qt::LeftButton);
+  click(edge->pixelA + glm::dvec2(1, -1));
+  ASSERT_TRUE(settle());
+  EXPECT_EQ(count(), before) << "the corner alone is no observation";
+  click(edge->pixelA + glm::dvec2(4, 2));
+  ASSERT_TRUE(waitFor([&] { return count() == before + 1; }, 10'000));
+  EXPECT_EQ(last().kind, ObservedKind::Control);
+  const FrameDescription& frame = *view().probe().description();
+  const auto shown = frame.camera.project(frame.cameraFromWorld * last().world);
+  ASSERT_TRUE(shown);
+  EXPECT_LT(glm::length(*shown - edge->pixelA), 2.5) << "a corner that is drawn where it was clicked";
+  EXPECT_LT(glm::length(last().pixel - edge->pixelA - glm::dvec2(4, 2)), 1.5);
+}
+
+TEST_F(ResectionWindow, AnEdgeOfTheDesignIsObservedInSeveralPlaces) {
+  const auto edge = drawnEdge();
+  ASSERT_TRUE(edge);
+  const std::size_t before = count();
+  points->setCurrentIndex(points->findText("Edge of the design"));
+  QTest::mouseClick(pick, Qt::LeftButton);
+  const glm::dvec2 middle = 0.5 * (edge->pixelA + edge->pixelB), along = edge->pixelB - edge->pixelA;
+  click(middle);
+  ASSERT_TRUE(settle());
+  const glm::dvec2 across = 3.0 * glm::normalize(glm::dvec2(-along.y, along.x));
+  click(middle + 0.2 * along + across);
+  click(middle - 0.2 * along + across);
+  ASSERT_TRUE(waitFor([&] { return count() == before + 2; }, 10'000));
+  key(Qt::Key_Escape);
+  EXPECT_EQ(last().kind, ObservedKind::Edge);
+  EXPECT_NE(last().world, last().edgeEnd);
+  const auto residual = window->refinement().residual(last());
+  ASSERT_TRUE(residual);
+  EXPECT_NEAR(glm::length(*residual), 3.0, 1.6) << "the distance across the edge, whatever the place along it";
+}
+
+TEST_F(ResectionWindow, TheTableSortsByResidualAndHoldsOut) {
+  const std::size_t observed = observeControlPoints([](std::size_t i) { return glm::dvec2(i == 2 ? 9 : 0, 0.5 * (i % 2)); });
+  ASSERT_GE(observed, 6u);
+  QAbstractItemModel* model = table->model();
+  table->sortByColumn(ObservationModel::Residual, Qt::DescendingOrder);
+  const auto key = [&](int row) { return model->index(row, ObservationModel::Residual).data(ObservationModel::kSortRole).toDouble(); };
+  for (int row = 1; row < model->rowCount(); ++row) EXPECT_GE(key(row - 1), key(row));
+  EXPECT_GT(key(0), 7.0);
+
+  // The worst is held out: it stays in the table, and the fit is good without it.
+  ASSERT_TRUE(model->setData(model->index(0, ObservationModel::Check), Qt::Checked, Qt::CheckStateRole));
+  ASSERT_TRUE(settle());
+  window->refinement().refine();
+  ASSERT_TRUE(waitFor([&] { return window->refinement().hasCandidate(); }, 20'000));
+  const auto& summary = *window->refinement().summary();
+  bool heldOut = false;
+  for (const ResidualGroup& group : summary.groups) {
+    if (group.heldOut) heldOut = true, EXPECT_GT(group.rmsPx, 6.0);
+    else EXPECT_LT(group.rmsPx, 1.5);
+  }
+  EXPECT_TRUE(heldOut);
+  window->actions()[Command::DropPose]->trigger();
+  EXPECT_FALSE(window->refinement().hasCandidate());
+}
+
+TEST_F(ResectionWindow, MillimetresAreGivenAtTheChosenPoint) {
+  ASSERT_GE(observeControlPoints([](std::size_t i) { return glm::dvec2(0.3 * (i % 3), 0.2); }), 6u);
+  const auto place = pixelOnScan(true);
+  ASSERT_TRUE(place);
+  QTest::mouseClick(window->findChild<QPushButton*>("judge"), Qt::LeftButton);
+  click(*place);
+  ASSERT_TRUE(waitFor([&] { return window->refinement().judgedAt().has_value(); }, 10'000));
+  window->refinement().refine();
+  ASSERT_TRUE(waitFor([&] { return window->refinement().hasCandidate(); }, 20'000));
+  ASSERT_EQ(window->refinement().summary()->expected.size(), 1u);
+  EXPECT_GT(window->refinement().summary()->expected[0].millimetres, 0);
+  EXPECT_TRUE(window->findChild<QLabel*>("summary")->text().contains("at the chosen point"));
+}
+
+TEST_F(ResectionWindow, ResidualsAreDrawnAsLongAsWanted) {
+  auto* scale = window->findChild<ValueSlider*>("residualScale");
+  ASSERT_TRUE(scale);
+  emit scale->changed(50, false);
+  ASSERT_TRUE(settle());
+  EXPECT_EQ(session().display().residualScale, 50);
+  EXPECT_EQ(view().probe().description()->residualScale, 50);
+}
+
+TEST_F(ResectionWindow, APointIsFoundInOtherFrames) {
+  const std::size_t before = count();
+  ASSERT_GE(observeControlPoints([](std::size_t) { return glm::dvec2(0); }), 6u);
+  std::size_t found = 0;
+  for (int row = 0; row < table->model()->rowCount(); ++row) {
+    const std::size_t now = count();
+    table->selectRow(row);
+    auto* match = window->findChild<QPushButton*>("match");
+    ASSERT_TRUE(match->isEnabled());
+    QTest::mouseClick(match, Qt::LeftButton);
+    ASSERT_TRUE(settle());
+    found += count() - now;
+  }
+  EXPECT_GE(found, 3u) << "the demo's frames overlap";
+  // The demo's poses are the truth: what was found lies where they show the point.
+  const Project& project = *session().project();
+  for (std::size_t i = before; i < project.observations.size(); ++i) {
+    const Observation& o = project.observations[i];
+    const Frame& frame = *project.findFrame(o.frame);
+    const auto place = fittedPixel(project.findCamera(frame.camera)->camera, *frame.cameraFromWorld, o);
+    ASSERT_TRUE(place);
+    EXPECT_LT(glm::length(*place - o.pixel), 3.0) << frame.name;
+  }
 }
 
 }  // namespace alidade::test
