@@ -112,12 +112,12 @@ void PoseRefinement::matchInOtherFrames(ObservationId id) {
         for (const std::string& note : made->notes) m_session.messages().info(tr("%1 not found in %2").arg(name, text(note)));
         m_session.messages().info(tr("%1 found in %2 other frames").arg(name).arg(made->observations.size()));
         if (made->observations.empty()) return;
-        m_session.change(tr("Observe %1 in %2 frames").arg(name).arg(made->observations.size()), [&](Project& project) {
+        m_session.change(tr("Observe %1 in %2 frames").arg(name).arg(made->observations.size()), [&](Project& changed) {
           // Others may have come since the job began.
-          ObservationId next = nextObservationId(project);
+          ObservationId next = nextObservationId(changed);
           for (Observation found : made->observations) {
             found.id = next, ++next.value;
-            project.observations.push_back(std::move(found));
+            changed.observations.push_back(std::move(found));
           }
         });
       });
