@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "app/observing.h"
+#include "app/pose_clock.h"
 #include "ui/format.h"
 
 namespace alidade {
@@ -224,7 +225,7 @@ std::optional<glm::dvec2> PoseRefinement::residual(const Observation& observatio
   const Frame* frame = project.findFrame(observation.frame);
   const CameraRecord* camera = frame ? project.findCamera(frame->camera) : nullptr;
   if (!camera || !frame->cameraFromWorld) return std::nullopt;
-  const auto pixel = fittedPixel(camera->camera, *frame->cameraFromWorld, observation);
+  const auto pixel = fittedPixel(camera->camera, shutterOf(project, *frame), *frame->cameraFromWorld, observation);
   if (!pixel) return std::nullopt;
   return *pixel - observation.pixel;
 }

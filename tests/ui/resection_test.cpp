@@ -246,7 +246,7 @@ TEST_F(ResectionWindow, APointIsFoundInOtherFrames) {
   for (std::size_t i = before; i < project.observations.size(); ++i) {
     const Observation& o = project.observations[i];
     const Frame& frame = *project.findFrame(o.frame);
-    const auto place = fittedPixel(project.findCamera(frame.camera)->camera, *frame.cameraFromWorld, o);
+    const auto place = fittedPixel(project.findCamera(frame.camera)->camera, {}, *frame.cameraFromWorld, o);
     ASSERT_TRUE(place);
     EXPECT_LT(glm::length(*place - o.pixel), 3.0) << frame.name;
   }
