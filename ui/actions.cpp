@@ -100,6 +100,8 @@ const std::vector<ActionSpec>& actionTable() {
        "Solves for the pose that fits the picked points"},
       {C::AcceptPose, "acceptPose", "Accept pose", "pass", "", "Keeps the refined pose"},
       {C::DropPose, "dropPose", "Drop pose", "cancel", "", "Goes back to the pose before the refinement"},
+      {C::CalibrateCamera, "calibrateCamera", "Calibrate camera…", "camera", "",
+       "Finds a camera's lens from pictures of a chessboard or ChArUco board"},
       {C::LookFromFrame, "lookFromFrame", "Look from this frame", "camera", "Shift+L",
        "Moves the 3D view to the camera of this frame"},
       {C::FitScene, "fitScene", "Fit site in 3D", "fit", "Shift+F", "Shows the whole site in 3D"},

@@ -75,6 +75,7 @@ enum class Command {
   RefinePose,
   AcceptPose,
   DropPose,
+  CalibrateCamera,
   LookFromFrame,
   FitScene,
   HideSelected,

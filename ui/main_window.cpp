@@ -19,6 +19,7 @@
 #include <QToolButton>
 #include <QVBoxLayout>
 
+#include "ui/calibration_dialog.h"
 #include "ui/cleaning_panel.h"
 #include "ui/clock_panel.h"
 #include "ui/command_palette.h"
@@ -92,6 +93,7 @@ MainWindow::~MainWindow() {
   hide();
   for (QToolBar* bar : findChildren<QToolBar*>(QString(), Qt::FindDirectChildrenOnly)) delete bar;
   delete m_export;
+  delete m_calibration;
   delete m_palette;
   if (m_scene->isWindow()) m_splitter->addWidget(m_scene);  // out in its own window: it goes with the rest
   delete takeCentralWidget();

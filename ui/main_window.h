@@ -21,6 +21,7 @@ class QStackedWidget;
 
 namespace alidade {
 
+class CalibrationDialog;
 class CleaningPanel;
 class CommandPalette;
 class ExportDialog;
@@ -54,6 +55,7 @@ class MainWindow : public QMainWindow {
   SceneWidget& scene() { return *m_scene; }
   ProjectTreeModel& tree() { return *m_tree; }
   ExportDialog* exportDialog() const { return m_export; }
+  CalibrationDialog* calibrationDialog() const { return m_calibration; }
 
   /// Opens a project or makes one of the files; for the command line.
   void openPaths(const QStringList& paths);
@@ -126,6 +128,7 @@ class MainWindow : public QMainWindow {
   ValueSlider* m_pointSize;
   CommandPalette* m_palette;
   ExportDialog* m_export = nullptr;
+  CalibrationDialog* m_calibration = nullptr;
   QToolBar* m_toolBar;
   QWidget* m_timeline;
   QList<QDockWidget*> m_docks;

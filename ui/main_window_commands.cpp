@@ -18,6 +18,7 @@
 #include <QToolBar>
 
 #include "app/version.h"
+#include "ui/calibration_dialog.h"
 #include "ui/cleaning_panel.h"
 #include "ui/command_palette.h"
 #include "ui/export_dialog.h"
@@ -96,7 +97,8 @@ void MainWindow::buildMenus() {
   for (const Command c : {C::ThemeDark, C::ThemeLight, C::ThemeContrast}) theme->addAction(a[c]);
   fill(tr("F&rame"), {id(C::Play), id(C::PreviousFrame), id(C::NextFrame), id(C::PreviousTen), id(C::NextTen),
                       id(C::FirstFrame), id(C::LastFrame)});
-  fill(tr("A&lign"), {id(C::Resection), id(C::RefinePose), id(C::AcceptPose), id(C::DropPose)});
+  fill(tr("A&lign"), {id(C::Resection), id(C::RefinePose), id(C::AcceptPose), id(C::DropPose), -1,
+                      id(C::CalibrateCamera)});
   fill(tr("&Inspect"), {id(C::ToolSelect), id(C::ToolPick), id(C::ToolMeasure), id(C::ClearMeasurements), -1,
                         id(C::HideSelected), id(C::IsolateStorey), id(C::ShowAllElements), -1, id(C::ShowCleaning)});
   fill(tr("A&nnotate"), {id(C::ToolText), id(C::ToolArrow), id(C::ToolCallout), -1, id(C::Delete)});
@@ -401,6 +403,15 @@ void MainWindow::connectFrameActions() {
   connect(a[C::RefinePose], &QAction::triggered, m_refinement, &PoseRefinement::refine);
   connect(a[C::AcceptPose], &QAction::triggered, m_refinement, &PoseRefinement::accept);
   connect(a[C::DropPose], &QAction::triggered, m_refinement, &PoseRefinement::drop);
+  connect(a[C::CalibrateCamera], &QAction::triggered, this, [this] {
+    if (!m_calibration) {
+      m_calibration = new CalibrationDialog(*m_session, this);
+      connect(m_calibration, &QObject::destroyed, this, [this] { m_calibration = nullptr; });
+    }
+    m_calibration->show();
+    m_calibration->raise();
+    m_calibration->activateWindow();
+  });
   connect(m_refinement, &PoseRefinement::changed, this, &MainWindow::refreshEnabled);
 }
 
