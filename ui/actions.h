@@ -72,6 +72,7 @@ enum class Command {
   ToolText,
   ToolCallout,
   Resection,
+  AutoAlign,
   RefinePose,
   AcceptPose,
   DropPose,

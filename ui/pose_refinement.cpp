@@ -164,10 +164,44 @@ void PoseRefinement::refine() {
         if (!outcome) {
           m_session.messages().error(outcome.error());
         } else if (m_session.project() == project) {
+          m_alignment.reset();
           m_summary = std::move(outcome->summary);
           m_frameNames = std::move(outcome->frameNames);
           m_outliers = std::move(outcome->outliers);
           if (m_summary->converged) propose(outcome->project, name);
+        }
+        emit changed();
+      });
+}
+
+void PoseRefinement::alignAutomatically() {
+  if (m_running || !m_session.currentFrame()) return;
+  struct Outcome {
+    AlignmentSummary summary;
+    std::shared_ptr<const Project> project;
+  };
+  const auto project = m_session.project();
+  const QString name = tr("Align %1 with the scan").arg(text(m_session.currentFrame()->name));
+  m_running = true;
+  emit changed();
+  m_session.jobs().run(
+      name,
+      [project, data = m_session.data(), frame = m_session.frame()](const Progress& progress) -> Result<Outcome> {
+        Project copy = *project;
+        PictureCache pictures(1);
+        auto summary = autoAlignFrame(copy, alignmentScene(copy, *data), pictures, frame, {}, false, progress);
+        if (!summary) return fail(summary.error());
+        return Outcome{std::move(*summary), std::make_shared<const Project>(std::move(copy))};
+      },
+      [this, project, name](Result<Outcome> outcome) {
+        m_running = false;
+        if (!outcome) {
+          m_session.messages().error(outcome.error());
+        } else if (m_session.project() == project) {
+          m_summary.reset();
+          m_outliers.clear();
+          m_alignment = std::move(outcome->summary);
+          if (m_alignment->converged) propose(outcome->project, name);
         }
         emit changed();
       });
@@ -216,6 +250,7 @@ void PoseRefinement::drop() {
 void PoseRefinement::forget() {
   m_candidate.reset();
   m_summary.reset();
+  m_alignment.reset();
   m_outliers.clear();
   emit changed();
 }

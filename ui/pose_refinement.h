@@ -8,6 +8,7 @@
 
 #include <QObject>
 
+#include "app/auto_align.h"
 #include "app/jobs.h"
 #include "app/refine_network.h"
 #include "ui/session.h"
@@ -43,15 +44,16 @@ class PoseRefinement : public QObject {
   const std::optional<glm::dvec3>& judgedAt() const { return m_judgedAt; }
 
   void refine();
+  /// Fits the current frame to the scan without any observation. A pose that is not believed is not proposed.
+  void alignAutomatically();
   bool running() const { return m_running; }
   bool hasCandidate() const { return m_candidate != nullptr; }
   void accept();
   void drop();
 
-  /// A project with better poses, made elsewhere and not yet accepted: as a refinement's own.
-  void propose(std::shared_ptr<const Project> candidate, const QString& name);
-
+  /// What the last refinement came to; one of the two, or none.
   const std::optional<NetworkSummary>& summary() const { return m_summary; }
+  const std::optional<AlignmentSummary>& alignment() const { return m_alignment; }
   const std::vector<std::string>& frameNames() const { return m_frameNames; }  ///< of the summary's poses
   bool isOutlier(ObservationId id) const { return m_outliers.contains(id); }
   /// Fitted - observed at the pose now shown; nothing where it is not seen.
@@ -62,6 +64,7 @@ class PoseRefinement : public QObject {
 
  private:
   void forget();
+  void propose(std::shared_ptr<const Project> candidate, const QString& name);
   void showCandidate();
 
   Session& m_session;
@@ -71,6 +74,7 @@ class PoseRefinement : public QObject {
   std::shared_ptr<const Project> m_candidate;
   QString m_candidateName;
   std::optional<NetworkSummary> m_summary;
+  std::optional<AlignmentSummary> m_alignment;
   std::vector<std::string> m_frameNames;
   std::set<ObservationId> m_outliers;
   bool m_running = false;

@@ -54,6 +54,7 @@ ResectionPanel::ResectionPanel(Session& session, PoseRefinement& refinement, Ove
   m_scale->setObjectName(QStringLiteral("residualScale"));
   m_scale->setToolTip(tr("How much longer than true the residual vectors are drawn. Hold V to hide them"));
   m_form->outer->insertWidget(m_form->outer->indexOf(table) + 1, m_scale);
+  connect(m_form->align, &QPushButton::clicked, &m_refinement, &PoseRefinement::alignAutomatically);
   connect(m_form->pick, &QPushButton::clicked, this, &ResectionPanel::startPick);
   connect(m_form->match, &QPushButton::clicked, this, [this] { m_refinement.matchInOtherFrames(selected()); });
   connect(m_form->judge, &QPushButton::clicked, this, [this] {
@@ -230,9 +231,12 @@ void ResectionPanel::refresh() {
                                   [](const Observation& o) { return o.enabled && !o.heldOut; });
   const bool all = m_refinement.scope() == RefinementScope::AllFrames;
   m_form->observationTable->setColumnHidden(ObservationModel::FrameName, !all);
-  m_form->pick->setEnabled(m_session.currentFrame() != nullptr);
+  const Frame* frame = m_session.currentFrame();
+  const bool hasModel = !m_session.project()->scans.empty() || !m_session.project()->designs.empty();
+  m_form->align->setEnabled(frame && frame->cameraFromWorld && hasModel && !m_refinement.running());
+  m_form->pick->setEnabled(frame != nullptr);
   m_form->match->setEnabled(static_cast<bool>(selected()) && m_session.project()->frames.size() > 1);
-  m_form->judge->setEnabled(m_session.currentFrame() != nullptr);
+  m_form->judge->setEnabled(frame != nullptr);
   m_form->refine->setEnabled(used > 0 && !m_refinement.running());
   m_form->refine->setText(m_refinement.running() ? tr("Refining…") : tr("Refine"));
   m_form->accept->setEnabled(m_refinement.hasCandidate());
@@ -242,10 +246,23 @@ void ResectionPanel::refresh() {
   refreshSummary();
 }
 
+QString ResectionPanel::alignmentWords() const {
+  const AlignmentSummary& found = *m_refinement.alignment();
+  if (!found.converged)
+    return tr("✕ Not aligned: %1\nPick points, or start from a better pose.").arg(text(found.reason));
+  const glm::dvec3 moved = found.cameraFromWorld.centre() - found.startCameraFromWorld.centre();
+  QStringList lines{tr("✓ Aligned, confidence %1").arg(formatPercent(found.confidence)),
+                    tr("%1 of %2 patches agree").arg(found.evidence.inliers).arg(found.evidence.patches),
+                    tr("Overlay good to %1 px (95 %)").arg(found.evidence.expectedPx, 0, 'f', 2),
+                    tr("Moved %1").arg(formatMillimetres(glm::length(moved)))};
+  if (m_refinement.hasCandidate()) lines << tr("Hold B to see the pose before.");
+  return lines.join('\n');
+}
+
 void ResectionPanel::refreshSummary() {
   const auto& summary = m_refinement.summary();
   if (!summary) {
-    m_form->summary->clear();
+    m_form->summary->setText(m_refinement.alignment() ? alignmentWords() : QString());
     return;
   }
   QStringList lines;

@@ -49,6 +49,7 @@ class ResectionPanel : public QWidget {
   void refillPoints();
   void refresh();
   void refreshSummary();
+  QString alignmentWords() const;
   void startPick();
   void pickScanPoint(const QString& hint, const std::function<void(const glm::dvec3&)>& picked);
   void pickDesign(Source source);
