@@ -215,7 +215,12 @@ Result<Answer> run(const Arguments& arguments, const Progress& progress) {
   if (auto done = applyLocks(arguments.lock, freedom); !done) return fail(done.error());
   if (auto done = applyFree(arguments.free, freedom); !done) return fail(done.error());
   options.lockPosition = freedom.lockPosition, options.lockAttitude = freedom.lockAttitude[0];
-  if (arguments.automatic || arguments.sequence) return runPictures(arguments, options, progress);
+  const auto& turns = freedom.lockAttitude;
+  if (arguments.automatic || arguments.sequence) {
+    if (turns[0] != turns[1] || turns[1] != turns[2])
+      return fail("One rotation alone cannot be locked here", "--lock", "Lock attitude as a whole, or refine from observations");
+    return runPictures(arguments, options, progress);
+  }
   for (const std::string& text : arguments.at) {
     auto point = parsePoint(text);
     if (!point) return fail(point.error());
