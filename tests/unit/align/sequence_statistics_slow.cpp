@@ -74,7 +74,7 @@ TEST(SequenceStatistics, TenMinutesOfVideoWithDrift) {
     said.translation = -(said.rotation * (truth.back().centre() + off));
     frame.cameraFromWorld = said;
     FrameTruth ignored;
-    ASSERT_TRUE(writePng(renderer.render(walk[i], static_cast<int>(i), ignored), frame.image.path));
+    ASSERT_TRUE(writePng(renderer.render({walk[i]}, static_cast<int>(i), ignored), frame.image.path));
     project->frames.push_back(frame);
   }
   PictureCache pictures;
