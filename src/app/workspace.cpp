@@ -139,7 +139,6 @@ Result<FrameDescription> describeFrame(const Project& project, const LoadedData&
     if (const auto projected = fittedPixel(camera->camera, description.shutter, description.cameraFromWorld, seen))
       description.residuals.push_back({seen.pixel, *projected, seen.name});
   }
-  description.residualScale = project.display.residualScale;
   description.display = project.display;
   return description;
 }

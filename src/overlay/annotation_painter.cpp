@@ -270,7 +270,7 @@ void Painter::residuals() {
   for (const ResidualMark& mark : m_frame.residuals) {
     const glm::dvec2 observed = resultFromRaw(m_frame, m_camera, mark.observedPx);
     const glm::dvec2 projected = resultFromRaw(m_frame, m_camera, mark.projectedPx);
-    const glm::dvec2 vector = m_frame.residualScale * (projected - observed);
+    const glm::dvec2 vector = m_frame.display.residualScale * (projected - observed);
     if (!m_camera.inPicture(observed) || !(glm::length(vector) < 1e5)) continue;
     const QPointF from = point(observed), to = point(observed + vector);
     const double arm = 5 * m_scale;

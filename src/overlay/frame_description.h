@@ -61,7 +61,6 @@ struct FrameDescription {
   std::vector<Annotation> annotations;           ///< those of this frame and those tied to the world
   AnnotationId selectedAnnotation;
   std::vector<ResidualMark> residuals;
-  double residualScale = 1.0;
   DisplaySettings display;
 
   // While the view moves, frames are quick before they are complete (frame_pacer.h).

@@ -225,7 +225,7 @@ TEST_F(ResectionWindow, ResidualsAreDrawnAsLongAsWanted) {
   emit scale->changed(50, false);
   ASSERT_TRUE(settle());
   EXPECT_EQ(session().display().residualScale, 50);
-  EXPECT_EQ(view().probe().description()->residualScale, 50);
+  EXPECT_EQ(view().probe().description()->display.residualScale, 50);
 }
 
 TEST_F(ResectionWindow, APointIsFoundInOtherFrames) {

@@ -415,7 +415,7 @@ TEST(OverlayRenderer, GivesAPictureWithCountsMarksAndNames) {
   frame.annotations.push_back(arrow);
   frame.selectedAnnotation = {8};
   frame.residuals.push_back({{700, 300}, {703, 298}, "P1"});
-  frame.residualScale = 20;
+  frame.display.residualScale = 20;
   frame.width = 960;
   frame.height = 600;
   const auto picture = (*renderer)->render(frame);
