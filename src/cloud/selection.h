@@ -37,6 +37,7 @@ enum class LevelThreshold {
   ByDistance,  ///< each node by its own distance from the eye
   /// Each point by its own distance (Zhang 2020), so that no node's border shows: ranges draw copies of the points
   /// that are left, in their own colour. Costs a pass over the points in view; fewer are drawn than ByDistance draws.
+  /// Not for a PointStyler: its ranges would no longer be prefixes of nodes.
   ByPoint,
   Uniform,     ///< all nodes at the level that the nearest one wants (Zhang 2020, uniform threshold)
 };
