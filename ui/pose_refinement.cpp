@@ -54,6 +54,30 @@ Result<RefineOutcome> run(const RefineTask& task, const Progress& progress) {
   return outcome;
 }
 
+bool samePose(const std::optional<RigidTransform>& a, const std::optional<RigidTransform>& b) {
+  return a && b && a->rotation == b->rotation && a->translation == b->translation;
+}
+
+/// Gives `project` the poses and calibrations that the refinement changed, and no other: the rest may have been
+/// changed since it began.
+void apply(const Project& base, const Project& candidate, Project& project) {
+  for (const Frame& better : candidate.frames) {
+    const Frame* was = base.findFrame(better.id);
+    Frame* frame = project.findFrame(better.id);
+    if (!was || !frame || samePose(was->cameraFromWorld, better.cameraFromWorld)) continue;
+    frame->cameraFromWorld = better.cameraFromWorld;
+    frame->originalCameraFromWorld = better.originalCameraFromWorld;
+    frame->poseSource = better.poseSource;
+    frame->quality = better.quality;
+  }
+  for (const CameraRecord& better : candidate.cameras) {
+    const CameraRecord* was = base.findCamera(better.id);
+    if (!was || was->camera.intrinsics().parameters() == better.camera.intrinsics().parameters()) continue;
+    for (CameraRecord& camera : project.cameras)
+      if (camera.id == better.id) camera.camera = better.camera;
+  }
+}
+
 }  // namespace
 
 PoseRefinement::PoseRefinement(Session& session, QObject* parent) : QObject(parent), m_session(session) {
@@ -168,7 +192,7 @@ void PoseRefinement::refine() {
           m_summary = std::move(outcome->summary);
           m_frameNames = std::move(outcome->frameNames);
           m_outliers = std::move(outcome->outliers);
-          if (m_summary->converged) propose(outcome->project, name);
+          if (m_summary->converged) propose(project, outcome->project, name);
         }
         emit changed();
       });
@@ -201,13 +225,14 @@ void PoseRefinement::alignAutomatically() {
           m_summary.reset();
           m_outliers.clear();
           m_alignment = std::move(outcome->summary);
-          if (m_alignment->converged) propose(outcome->project, name);
+          if (m_alignment->converged) propose(project, outcome->project, name);
         }
         emit changed();
       });
 }
 
-void PoseRefinement::propose(std::shared_ptr<const Project> candidate, const QString& name) {
+void PoseRefinement::propose(std::shared_ptr<const Project> base, std::shared_ptr<const Project> candidate, const QString& name) {
+  m_base = std::move(base);
   m_candidate = std::move(candidate);
   m_candidateName = name;
   showCandidate();
@@ -216,10 +241,7 @@ void PoseRefinement::propose(std::shared_ptr<const Project> candidate, const QSt
 void PoseRefinement::showCandidate() {
   const Frame* frame = m_candidate ? m_candidate->findFrame(m_session.frame()) : nullptr;
   const Frame* shown = m_session.currentFrame();
-  const auto same = [](const std::optional<RigidTransform>& a, const std::optional<RigidTransform>& b) {
-    return a && b && a->rotation == b->rotation && a->translation == b->translation;
-  };
-  const bool differs = frame && shown && frame->cameraFromWorld && !same(frame->cameraFromWorld, shown->cameraFromWorld);
+  const bool differs = frame && shown && frame->cameraFromWorld && !samePose(frame->cameraFromWorld, shown->cameraFromWorld);
   m_session.setCandidatePose(differs ? frame->cameraFromWorld : std::nullopt);
   emit changed();
 }
@@ -228,17 +250,7 @@ void PoseRefinement::accept() {
   if (!m_candidate) return;
   const auto candidate = std::exchange(m_candidate, nullptr);
   m_session.setCandidatePose(std::nullopt);
-  m_session.change(m_candidateName, [&](Project& project) {
-    // Poses and calibrations alone: annotations and observations may have changed since.
-    for (const Frame& better : candidate->frames)
-      if (Frame* frame = project.findFrame(better.id)) {
-        frame->cameraFromWorld = better.cameraFromWorld;
-        frame->originalCameraFromWorld = better.originalCameraFromWorld;
-        frame->poseSource = better.poseSource;
-        frame->quality = better.quality;
-      }
-    project.cameras = candidate->cameras;
-  });
+  m_session.change(m_candidateName, [&](Project& project) { apply(*m_base, *candidate, project); });
   emit changed();
 }
 

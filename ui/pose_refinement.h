@@ -64,14 +64,14 @@ class PoseRefinement : public QObject {
 
  private:
   void forget();
-  void propose(std::shared_ptr<const Project> candidate, const QString& name);
+  void propose(std::shared_ptr<const Project> base, std::shared_ptr<const Project> candidate, const QString& name);
   void showCandidate();
 
   Session& m_session;
   RefinementScope m_scope = RefinementScope::Frame;
   NetworkFreedom m_freedom;
   std::optional<glm::dvec3> m_judgedAt;
-  std::shared_ptr<const Project> m_candidate;
+  std::shared_ptr<const Project> m_base, m_candidate;  ///< what was refined, and what came of it
   QString m_candidateName;
   std::optional<NetworkSummary> m_summary;
   std::optional<AlignmentSummary> m_alignment;

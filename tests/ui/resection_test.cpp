@@ -219,6 +219,24 @@ TEST_F(ResectionWindow, MillimetresAreGivenAtTheChosenPoint) {
   EXPECT_TRUE(window->findChild<QLabel*>("summary")->text().contains("at the chosen point"));
 }
 
+TEST_F(ResectionWindow, AcceptingAPoseKeepsWhatChangedMeanwhile) {
+  ASSERT_GE(observeControlPoints([](std::size_t i) { return glm::dvec2(0.4 * (i % 3), 0.3); }), 6u);
+  window->refinement().refine();
+  ASSERT_TRUE(waitFor([&] { return window->refinement().hasCandidate(); }, 20'000));
+  const FrameId other = session().project()->frames[1].id;
+  session().change("Change another", [&](Project& project) {
+    project.cameras[0].readoutSecs = 0.01;
+    project.findFrame(other)->cameraFromWorld->translation.x += 1;
+  });
+  const Project before = *session().project();
+  window->refinement().accept();
+  const Project& after = *session().project();
+  EXPECT_EQ(after.cameras[0].readoutSecs, 0.01);
+  EXPECT_EQ(after.findFrame(other)->cameraFromWorld->translation, before.findFrame(other)->cameraFromWorld->translation);
+  EXPECT_NE(after.frames[0].cameraFromWorld->translation, before.frames[0].cameraFromWorld->translation);
+  EXPECT_EQ(after.frames[0].poseSource, PoseSource::Refined);
+}
+
 TEST_F(ResectionWindow, ResidualsAreDrawnAsLongAsWanted) {
   auto* scale = window->findChild<ValueSlider*>("residualScale");
   ASSERT_TRUE(scale);
