@@ -119,7 +119,7 @@ void RenderLoop::render(OverlayRenderer& renderer, const RenderRequest& request)
     return;
   }
   description->display = request.display;
-  description->occlusionShrink = request.played ? 2 : 1;
+  if (request.played) allowForPlaying(*description);
   description->width = request.width;
   description->height = request.height;
   if (!request.residuals) description->residuals.clear();

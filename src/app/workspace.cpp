@@ -143,4 +143,10 @@ Result<FrameDescription> describeFrame(const Project& project, const LoadedData&
   return description;
 }
 
+void allowForPlaying(FrameDescription& frame) {
+  constexpr double allowedPx = 0.5;
+  frame.playing = true;
+  frame.display.subdivisionErrorPx = std::max(frame.display.subdivisionErrorPx, allowedPx);
+}
+
 }  // namespace alidade

@@ -70,4 +70,8 @@ Result<FrameDescription> describeFrame(const Project& project, const LoadedData&
                                        std::shared_ptr<const ColourImage> image, const SelectionState& selection = {},
                                        const std::optional<RigidTransform>& pose = {});
 
+/// Lowers what the frame costs to what a video that plays can spend: see FrameDescription::playing, and design edges may sag by half
+/// a pixel against the lens's curve.
+void allowForPlaying(FrameDescription& frame);
+
 }  // namespace alidade

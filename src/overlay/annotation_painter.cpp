@@ -9,13 +9,13 @@
 #include <numbers>
 #include <vector>
 
-#include <QFontMetricsF>
 #include <QImage>
 #include <QPainter>
 #include <QPainterPath>
 
 #include "overlay/annotation_layout.h"
 #include "overlay/frame_uniform.h"
+#include "overlay/text_sprites.h"
 
 namespace alidade {
 
@@ -48,16 +48,16 @@ Look lookOf(Visibility visibility, HiddenStyle hidden) {
 /// Everything that the marks of one picture share.
 class Painter {
  public:
-  Painter(OverlayPicture& picture, const FrameDescription& frame, const Camera& camera)
+  Painter(OverlayPicture& picture, const FrameDescription& frame, const Camera& camera, TextSprites& texts)
       : m_picture(picture),
         m_frame(frame),
         m_camera(camera),
         m_image(reinterpret_cast<uchar*>(picture.colour.data()), picture.colour.width(),
                 picture.colour.height(), 4 * picture.colour.width(), QImage::Format_RGBA8888_Premultiplied),
         m_paint(&m_image),
-        m_scale(drawingScale(picture.colour.width(), picture.colour.height())) {
+        m_scale(drawingScale(picture.colour.width(), picture.colour.height())),
+        m_texts(texts) {
     m_paint.setRenderHint(QPainter::Antialiasing);
-    m_paint.setRenderHint(QPainter::TextAntialiasing);
   }
 
   void stakePoints();
@@ -81,6 +81,7 @@ class Painter {
   QImage m_image;
   QPainter m_paint;
   double m_scale;
+  TextSprites& m_texts;
   std::vector<QRectF> m_taken;
 };
 
@@ -144,18 +145,10 @@ bool Painter::isFree(const QRectF& box) const {
                                              [&](const QRectF& other) { return other.intersects(box); });
 }
 
+/// On whole pixels, as letters are drawn.
 void Painter::text(const TextBlock& block, const QRectF& box, const QFont& font, const QColor& colour) {
-  const QFontMetricsF metrics(font);
-  QPainterPath path;
-  double y = box.top() + block.padding + metrics.ascent();
-  for (const QString& line : block.lines) {
-    path.addText(QPointF(box.left() + block.padding, y), font, line);
-    y += metrics.height();
-  }
-  m_paint.setBrush(Qt::NoBrush);
-  m_paint.setPen(QPen(kCasing, 3.6 * m_scale, Qt::SolidLine, Qt::RoundCap, Qt::RoundJoin));
-  m_paint.drawPath(path);
-  m_paint.fillPath(path, colour);
+  const TextSprites::Sprite& sprite = m_texts.of(block, font, colour, m_scale);
+  m_paint.drawImage(QPointF(std::round(box.left()) - sprite.margin, std::round(box.top()) - sprite.margin), sprite.image);
 }
 
 /// Beside its mark in the first free place of eight; left out where all are taken, unless it must stand.
@@ -303,11 +296,11 @@ double distanceToSegment(const glm::dvec2& p, const glm::dvec2& a, const glm::dv
 
 }  // namespace
 
-void paintAnnotations(OverlayPicture& picture, const FrameDescription& frame, const Camera& scaledCamera) {
+void paintAnnotations(OverlayPicture& picture, const FrameDescription& frame, const Camera& scaledCamera, TextSprites& texts) {
   const bool stakes = frame.display.stakePoints && !frame.stakePoints.empty();
   const bool remarks = frame.display.annotations && !frame.annotations.empty();
   if (picture.colour.empty() || (!stakes && !remarks && frame.residuals.empty())) return;
-  Painter painter(picture, frame, scaledCamera);
+  Painter painter(picture, frame, scaledCamera, texts);
   if (stakes) painter.stakePoints();
   if (remarks) painter.annotations();
   painter.residuals();

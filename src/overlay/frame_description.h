@@ -66,9 +66,10 @@ struct FrameDescription {
   // While the view moves, frames are quick before they are complete (frame_pacer.h).
   std::uint64_t pointBudget = 0;  ///< of each scan pass, over all scans; 0: none
   double selectionAgeMs = 0;      ///< points chosen for an earlier frame may serve this one for so long
-  /// 2: judges what hides the design on a picture half as wide and high and spreads that along its surfaces (see
-  /// raster/depth_spread.h): for playing, where a frame has a fifteenth of a second. Only for even sizes.
-  int occlusionShrink = 1;
+  /// Of a video that plays, where a frame has a fifteenth of a second: what hides the design is judged by the scanners' own
+  /// grid alone where there is one, else by the points, on half the picture's width and height where they are even, and
+  /// spread along its surfaces (see raster/depth_spread.h); elements' pixels are not counted.
+  bool playing = false;
 };
 
 /// Pixels of one design element, counted on the result. The front layer counts by its state; the hidden
@@ -99,7 +100,7 @@ struct OverlayPicture {
   std::uint64_t pointsTotal = 0, pointsDrawn = 0;  ///< see ScanPictures
   std::uint64_t pointsJudged = 0;
   double worstErrorPx = 0;  ///< largest distance of a drawn design edge from its exact curve, pixels
-  std::vector<ElementPixels> elements;  ///< those with a pixel in the picture
+  std::vector<ElementPixels> elements;  ///< those with a pixel in the picture; none of a video that plays
 
   /// The layer and element behind an `element` pixel value.
   std::vector<std::uint32_t> firstElementOfLayer;

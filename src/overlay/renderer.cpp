@@ -13,6 +13,7 @@
 #include "overlay/annotation_painter.h"
 #include "overlay/picture_scaling.h"
 #include "overlay/scan_painter.h"
+#include "overlay/text_sprites.h"
 #include "raster/occlusion.h"
 
 namespace alidade {
@@ -70,6 +71,7 @@ Result<void> checkFrame(const FrameDescription& frame, int width, int height) {
 struct OverlayRenderer::Impl {
   std::unique_ptr<OverlayDevice> device;
   ScanPainter scans;
+  TextSprites texts;
   // The camera image at the result's size; the source is held so that its address stays its name.
   std::shared_ptr<const ColourImage> source;
   ColourImage scaled;
@@ -137,8 +139,8 @@ Result<OverlayPicture> OverlayRenderer::render(const FrameDescription& frame) {
     picture.firstElementOfLayer.push_back(elementCount);
     if (layer.model) elementCount += static_cast<std::uint32_t>(layer.model->elements.size());
   }
-  countElements(picture, drawn->hiddenElement, elementCount);
-  paintAnnotations(picture, frame, camera);
+  if (!frame.playing) countElements(picture, drawn->hiddenElement, elementCount);
+  paintAnnotations(picture, frame, camera, m_impl->texts);
   return picture;
 }
 

@@ -40,6 +40,12 @@ double millisecondsNow() {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
+std::vector<std::shared_ptr<const PointStore>> storesOf(const std::vector<ScanLayer>& scans) {
+  std::vector<std::shared_ptr<const PointStore>> stores;
+  for (const ScanLayer& scan : scans) stores.push_back(scan.points.store);
+  return stores;
+}
+
 SplatOptions splatOptions(const FrameDescription& frame) {
   const DisplaySettings& display = frame.display;
   SplatOptions options;
@@ -72,14 +78,15 @@ PointStyler& ScanPainter::stylerOf(const ScanPoints& points) {
 /// surface of the scanners' grid answers where they are too sparse to tell (sample site: 95.9 % right with
 /// both, 95.3 with points, 94.8 with the surface alone). A filtered scan is judged by its points: its
 /// surface holds what the filter leaves out. While the view moves, a budget may thin both.
-DepthImage ScanPainter::occlusion(const FrameDescription& frame, const Camera& camera, std::uint64_t& judged) {
+DepthImage ScanPainter::occlusion(const FrameDescription& frame, const std::vector<ScanLayer>& scans, const Camera& camera,
+                                  std::uint64_t& judged) {
   const PointStyle& style = frame.display.points;
   std::vector<SplatLayer> layers;
   Occluders surfaces;
   std::vector<Selection> few;
-  if (frame.pointBudget > 0) few = select(m_stores, camera, frame.cameraFromWorld, judgingOptions(frame.pointBudget));
-  for (std::size_t i = 0; i < frame.scans.size(); ++i) {
-    const ScanLayer& scan = frame.scans[i];
+  if (frame.pointBudget > 0) few = select(storesOf(scans), camera, frame.cameraFromWorld, judgingOptions(frame.pointBudget));
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    const ScanLayer& scan = scans[i];
     Selection all = few.empty() ? selectAll(*scan.points.store, camera, frame.cameraFromWorld) : std::move(few[i]);
     stylerOf(scan.points).apply(style, PointStyler::Part::Filter, frame.cameraFromWorld.centre(), all);
     judged += all.pointCount;
@@ -95,11 +102,29 @@ DepthImage ScanPainter::occlusion(const FrameDescription& frame, const Camera& c
   return depth;
 }
 
+/// Of the sample site 94.7 % are right so, or 94.3 % where the scan has no grid.
+DepthImage ScanPainter::quickOcclusion(const FrameDescription& frame, const Camera& camera, std::uint64_t& judged) {
+  Occluders surfaces;
+  std::vector<ScanLayer> others;
+  for (const ScanLayer& scan : frame.scans) {
+    if (scan.surface && !frame.display.points.filters()) surfaces.meshes.push_back(scan.surface);
+    else others.push_back(scan);
+  }
+  const Camera half = camera.scaledTo(camera.width() / 2, camera.height() / 2);
+  if (surfaces.meshes.empty()) return spreadDepth(occlusion(frame, others, half, judged));
+  DepthImage depth = occlusionDepth(surfaces, half, frame.cameraFromWorld).depth;
+  if (!others.empty()) {
+    const DepthImage points = occlusion(frame, others, half, judged);
+    // The nearer; one that is not known is no number.
+    for (std::size_t i = 0; i < depth.size(); ++i) depth.data()[i] = std::fmin(depth.data()[i], points.data()[i]);
+  }
+  return spreadDepth(depth);
+}
+
 /// While the view moves, what was chosen for one frame may serve the next ones, too: at the border of the view
 /// points are then missing, and distances are a little off.
 const std::vector<Selection>& ScanPainter::chosenFor(const FrameDescription& frame, const Camera& camera) {
-  std::vector<std::shared_ptr<const PointStore>> stores;
-  for (const ScanLayer& scan : frame.scans) stores.push_back(scan.points.store);
+  std::vector<std::shared_ptr<const PointStore>> stores = storesOf(frame.scans);
   const double now = m_clock();
   const bool fresh = now - m_chosenAt < frame.selectionAgeMs;
   if (fresh && stores == m_stores) return m_chosen;
@@ -125,9 +150,8 @@ ScanPictures ScanPainter::draw(const FrameDescription& frame, const Camera& came
     pictures.chosen += chosen[i].pointCount;
   }
   // Also with the depth pass off: the read-out under the cursor stands on it.
-  const bool halves = frame.occlusionShrink == 2 && camera.width() % 2 == 0 && camera.height() % 2 == 0;
-  pictures.depth = halves ? spreadDepth(occlusion(frame, camera.scaledTo(camera.width() / 2, camera.height() / 2), pictures.judged))
-                          : occlusion(frame, camera, pictures.judged);
+  const bool isQuick = frame.playing && camera.width() % 2 == 0 && camera.height() % 2 == 0;
+  pictures.depth = isQuick ? quickOcclusion(frame, camera, pictures.judged) : occlusion(frame, frame.scans, camera, pictures.judged);
   for (std::size_t i = 0; i < layers.size(); ++i) {
     stylerOf(frame.scans[i].points)
         .apply(frame.display.points, shown ? PointStyler::Part::ColourAndFilter : PointStyler::Part::Filter,

@@ -40,7 +40,9 @@ class ScanPainter {
 
  private:
   PointStyler& stylerOf(const ScanPoints& points);
-  DepthImage occlusion(const FrameDescription& frame, const Camera& camera, std::uint64_t& judged);
+  DepthImage occlusion(const FrameDescription& frame, const std::vector<ScanLayer>& scans, const Camera& camera,
+                       std::uint64_t& judged);
+  DepthImage quickOcclusion(const FrameDescription& frame, const Camera& camera, std::uint64_t& judged);
   const std::vector<Selection>& chosenFor(const FrameDescription& frame, const Camera& camera);
 
   Clock m_clock;

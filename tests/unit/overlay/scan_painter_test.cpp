@@ -82,6 +82,18 @@ TEST_F(Wall, ABudgetHoldsForWhatIsShownAndForWhatJudges) {
   EXPECT_GT(known(few.depth), known(all.depth) * 9 / 10);
 }
 
+TEST_F(Wall, APlayedFrameIsJudgedOnHalfItsSizeAndFullSizeComesOfIt) {
+  lookFrom({1, -8, 0.5});
+  const DepthImage still = draw().depth;
+  frame.playing = true;
+  const DepthImage played = draw().depth;
+  ASSERT_EQ(played.width(), still.width());
+  ASSERT_EQ(played.height(), still.height());
+  EXPECT_GT(known(played), known(still) * 19 / 20);
+  for (int y = 60; y < 180; ++y)
+    for (int x = 80; x < 220; ++x) EXPECT_NEAR(played.at(x, y), 8.0, 0.01) << x << ' ' << y;
+}
+
 TEST_F(Wall, PointsChosenForOneFrameServeOthersForAWhile) {
   frame.selectionAgeMs = 100;
   const std::uint64_t near = draw().chosen;
