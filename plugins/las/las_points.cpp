@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <type_traits>
 
 namespace alidade {
 
@@ -59,67 +60,124 @@ void decodeOwn(const LasHeader& header, const LasExtraBytes* extra, const std::b
   }
 }
 
-void addExtra(PointBatch& batch, std::string name, NumberType type, int components, const std::byte* at,
-              std::size_t stride, std::size_t count) {
-  ExtraColumn& column = batch.extra.emplace_back(ExtraColumn{std::move(name), type, components, {}});
-  const std::size_t size = column.bytesPerPoint();
-  column.data.resize(count * size);
-  std::byte* out = column.data.data();
-  const auto copy = [&]<std::size_t Size>() {
-    for (std::size_t i = 0; i < count; ++i) std::memcpy(out + i * Size, at + i * stride, Size);
-  };
-  switch (size) {
-    case 1: return copy.template operator()<1>();
-    case 2: return copy.template operator()<2>();
-    case 4: return copy.template operator()<4>();
-    case 8: return copy.template operator()<8>();
-    default:
-      for (std::size_t i = 0; i < count; ++i) std::memcpy(out + i * size, at + i * stride, size);
-  }
-}
+/// A column of bytes that stand so in the record.
+struct CopiedField {
+  std::size_t at, bytes;
+  std::byte* to;
 
-/// The flags of a record of the formats 0-5 where the formats 6-10 have them.
-std::byte flagsOfOldRecord(const std::byte* at) {
-  const auto returns = lasValue<std::uint8_t>(at, 14), classification = lasValue<std::uint8_t>(at, 15);
-  return static_cast<std::byte>(classification >> 5 | (returns & 0xC0));
-}
-
-void decodeCore(const LasHeader& header, const std::byte* at, std::size_t count, PointBatch& batch) {
-  const std::size_t stride = header.recordLength;
-  const bool wide = header.pointFormat >= 6;
-  batch.position.resize(count);
-  batch.intensity.resize(count);
-  batch.classification.resize(count);
-  batch.returnNumber.resize(count);
-  batch.returnCount.resize(count);
-  const glm::dvec3 scale = header.scale, offset = header.offset;
-  for (std::size_t i = 0; i < count; ++i, at += stride) {
-    const glm::dvec3 steps(lasValue<std::int32_t>(at, 0), lasValue<std::int32_t>(at, 4), lasValue<std::int32_t>(at, 8));
-    batch.position[i] = scale * steps + offset;
-    batch.intensity[i] = lasValue<std::uint16_t>(at, 12);
-    const auto returns = lasValue<std::uint8_t>(at, 14);
-    batch.returnNumber[i] = returns & (wide ? 0x0F : 0x07);
-    batch.returnCount[i] = wide ? returns >> 4 : returns >> 3 & 0x07;
-    // Formats 0-5 keep three flags in the upper bits of the classification.
-    batch.classification[i] = wide ? lasValue<std::uint8_t>(at, 16) : lasValue<std::uint8_t>(at, 15) & 0x1F;
+  void copy(const std::byte* records, std::size_t stride, std::size_t first, std::size_t count) const {
+    const std::byte* from = records + first * stride + at;
+    const auto run = [&](auto size) {
+      std::byte* out = to + first * std::size_t{size};
+      for (std::size_t i = 0; i < count; ++i) std::memcpy(out + i * std::size_t{size}, from + i * stride, size);
+    };
+    switch (bytes) {
+      case 1: return run(std::integral_constant<std::size_t, 1>{});
+      case 2: return run(std::integral_constant<std::size_t, 2>{});
+      case 4: return run(std::integral_constant<std::size_t, 4>{});
+      case 6: return run(std::integral_constant<std::size_t, 6>{});
+      case 8: return run(std::integral_constant<std::size_t, 8>{});
+      default: return run(bytes);
+    }
   }
-}
+};
 
-void decodeFieldsWithoutColumn(const LasHeader& header, const std::byte* at, std::size_t count, PointBatch& batch) {
-  const std::size_t stride = header.recordLength;
-  if (header.pointFormat >= 6) {
-    addExtra(batch, "scan_flags", NumberType::U8, 1, at + 15, stride, count);
-    addExtra(batch, "scan_angle", NumberType::I16, 1, at + 18, stride, count);
-  } else {
-    ExtraColumn& flags = batch.extra.emplace_back(ExtraColumn{"scan_flags", NumberType::U8, 1, {}});
-    flags.data.resize(count);
-    for (std::size_t i = 0; i < count; ++i) flags.data[i] = flagsOfOldRecord(at + i * stride);
-    addExtra(batch, "scan_angle_rank", NumberType::I8, 1, at + 16, stride, count);
+/// What becomes of a file's records: columns, in the memory that the batch has.
+class BatchFilling {
+ public:
+  BatchFilling(const LasHeader& header, std::size_t count, PointBatch& batch) : m_header(header), m_count(count), m_batch(batch) {
+    for (auto* column : {&batch.classification, &batch.returnNumber, &batch.returnCount}) column->resize(count);
+    batch.position.resize(count);
+    batch.intensity.resize(count);
+    batch.gpsTime.clear(), batch.rgb.clear(), batch.normal.clear(), batch.scanner.clear(), batch.row.clear(), batch.column.clear();
+    copyColumn(12, batch.intensity);
+    if (header.hasGpsTime()) copyColumn(header.gpsTimeOffset(), batch.gpsTime);
+    if (header.hasRgb()) copyColumn(header.rgbOffset(), batch.rgb);
+    copyColumn(header.pointFormat >= 6 ? 20 : 18, batch.pointSource);
+    addFieldsWithoutColumn();
   }
-  addExtra(batch, "user_data", NumberType::U8, 1, at + 17, stride, count);
-  if (header.hasNir()) addExtra(batch, "nir", NumberType::U16, 1, at + 36, stride, count);
-  if (header.hasWaveforms()) addExtra(batch, "wave_packet", NumberType::U8, 29, at + header.wavePacketOffset(), stride, count);
-}
+
+  /// Bytes of the record as a column of its own.
+  void copyExtra(const std::string& name, NumberType type, int components, std::size_t at) {
+    ExtraColumn& column = addExtra(name, type, components);
+    m_copied.push_back({at, column.bytesPerPoint(), column.data.data()});
+  }
+
+  /// Fills the columns, a stretch after the other: its records are looked at once a column, and stay at hand.
+  void run(const std::byte* records) {
+    m_batch.extra.resize(m_extras);
+    const std::size_t stride = m_header.recordLength;
+    constexpr std::size_t kStretch = 512;
+    for (std::size_t first = 0; first < m_count; first += kStretch) {
+      const std::size_t count = std::min(kStretch, m_count - first);
+      if (m_header.pointFormat >= 6) fillCore<true>(records, first, count);
+      else fillCore<false>(records, first, count);
+      for (const CopiedField& field : m_copied) field.copy(records, stride, first, count);
+    }
+  }
+
+ private:
+  template <class T>
+  void copyColumn(std::size_t at, std::vector<T>& column) {
+    column.resize(m_count);
+    m_copied.push_back({at, sizeof(T), reinterpret_cast<std::byte*>(column.data())});
+  }
+
+  ExtraColumn& addExtra(const std::string& name, NumberType type, int components) {
+    if (m_extras == m_batch.extra.size()) m_batch.extra.emplace_back();
+    ExtraColumn& column = m_batch.extra[m_extras++];
+    column.name = name, column.type = type, column.components = components;
+    column.data.resize(m_count * column.bytesPerPoint());
+    return column;
+  }
+
+  void addFieldsWithoutColumn() {
+    if (m_header.pointFormat >= 6) {
+      copyExtra("scan_flags", NumberType::U8, 1, 15);
+      copyExtra("scan_angle", NumberType::I16, 1, 18);
+    } else {
+      m_flags = addExtra("scan_flags", NumberType::U8, 1).data.data();
+      copyExtra("scan_angle_rank", NumberType::I8, 1, 16);
+    }
+    copyExtra("user_data", NumberType::U8, 1, 17);
+    if (m_header.hasNir()) copyExtra("nir", NumberType::U16, 1, 36);
+    if (m_header.hasWaveforms()) copyExtra("wave_packet", NumberType::U8, 29, m_header.wavePacketOffset());
+  }
+
+  /// Coordinates, and the fields that share a byte.
+  template <bool kWide>
+  void fillCore(const std::byte* records, std::size_t first, std::size_t count) {
+    const std::size_t stride = m_header.recordLength;
+    const glm::dvec3 scale = m_header.scale, offset = m_header.offset;
+    glm::dvec3* position = m_batch.position.data();
+    // Bytes may stand for anything: the columns' own addresses would be read again for each.
+    std::uint8_t *number = m_batch.returnNumber.data(), *returnCount = m_batch.returnCount.data(), *classes = m_batch.classification.data();
+    std::byte* flags = m_flags;
+    const std::byte* at = records + first * stride;
+    for (std::size_t i = first; i < first + count; ++i, at += stride) {
+      const glm::dvec3 steps(lasValue<std::int32_t>(at, 0), lasValue<std::int32_t>(at, 4), lasValue<std::int32_t>(at, 8));
+      position[i] = scale * steps + offset;
+      const auto returns = lasValue<std::uint8_t>(at, 14);
+      number[i] = returns & (kWide ? 0x0F : 0x07);
+      returnCount[i] = kWide ? returns >> 4 : returns >> 3 & 0x07;
+      if constexpr (kWide) {
+        classes[i] = lasValue<std::uint8_t>(at, 16);
+      } else {
+        // Three flags stand in the upper bits of the classification: they come where the formats 6-10 have them.
+        const auto classification = lasValue<std::uint8_t>(at, 15);
+        classes[i] = classification & 0x1F;
+        flags[i] = static_cast<std::byte>(classification >> 5 | (returns & 0xC0));
+      }
+    }
+  }
+
+  const LasHeader& m_header;
+  std::size_t m_count;
+  PointBatch& m_batch;
+  std::size_t m_extras = 0;  ///< of the batch's extra columns, those that are filled
+  std::byte* m_flags = nullptr;
+  std::vector<CopiedField> m_copied;
+};
 
 /// How many bytes stand behind the last described one.
 std::uint32_t undescribedBytes(const LasHeader& header) {
@@ -132,16 +190,14 @@ std::string nameOf(const LasExtraBytes& extra) {
   return extra.name.empty() ? "extra_bytes" : extra.name;
 }
 
-void decodeExtras(const LasHeader& header, const OwnColumns& own, const std::byte* at, std::size_t count,
-                  PointBatch& batch) {
-  const std::size_t stride = header.recordLength;
+void copyExtras(const LasHeader& header, const OwnColumns& own, BatchFilling& filling) {
   for (const LasExtraBytes& extra : header.extras) {
     if (own.takes(extra) || extra.size == 0) continue;
     const int components = extra.type == 0 ? static_cast<int>(extra.size) : extra.components;
-    addExtra(batch, nameOf(extra), kTypes[extra.type], components, at + extra.offset, stride, count);
+    filling.copyExtra(nameOf(extra), kTypes[extra.type], components, extra.offset);
   }
   if (const std::uint32_t rest = undescribedBytes(header); rest > 0)
-    addExtra(batch, "extra_bytes", NumberType::U8, static_cast<int>(rest), at + stride - rest, stride, count);
+    filling.copyExtra("extra_bytes", NumberType::U8, static_cast<int>(rest), header.recordLength - rest);
 }
 
 /// The station of each point by the point source ID that the station's record names; none for the
@@ -179,26 +235,17 @@ std::uint16_t largestLasColour(const LasHeader& header, const std::byte* records
 
 void decodeLasPoints(const LasHeader& header, const std::byte* records, std::size_t count, bool unshiftedColours,
                      PointBatch& batch) {
-  const std::size_t stride = header.recordLength;
-  decodeCore(header, records, count, batch);
-  if (header.hasGpsTime()) copyColumn<double, double>(records + header.gpsTimeOffset(), stride, count, batch.gpsTime);
-  if (header.hasRgb()) {
-    batch.rgb.resize(count);
-    const std::byte* at = records + header.rgbOffset();
-    for (std::size_t i = 0; i < count; ++i, at += stride)
-      batch.rgb[i] = {lasValue<std::uint16_t>(at, 0), lasValue<std::uint16_t>(at, 2), lasValue<std::uint16_t>(at, 4)};
-  }
-  batch.rgbWhite = unshiftedColours ? 255 : 65535;
-  copyColumn<std::uint16_t, std::uint16_t>(records + (header.pointFormat >= 6 ? 20 : 18), stride, count, batch.pointSource);
   const OwnColumns own(header);
+  BatchFilling filling(header, count, batch);
+  copyExtras(header, own, filling);
+  filling.run(records);
+  batch.rgbWhite = unshiftedColours ? 255 : 65535;
   decodeOwn(header, own.row, records, count, batch.row);
   decodeOwn(header, own.column, records, count, batch.column);
   if (own.scanner)
     decodeOwn(header, own.scanner, records, count, batch.scanner);
   else
     decodeScanner(header, batch);
-  decodeFieldsWithoutColumn(header, records, count, batch);
-  decodeExtras(header, own, records, count, batch);
 }
 
 std::vector<std::string> lasAttributes(const LasHeader& header) {

@@ -11,8 +11,8 @@ namespace alidade {
 /// The largest colour number among the records; 0 where the format has no colours.
 std::uint16_t largestLasColour(const LasHeader& header, const std::byte* records, std::size_t count);
 
-/// Fills an empty batch from point records: every field, bit for bit. What PointBatch has no place for
-/// comes as extra columns:
+/// Fills a batch anew from point records, in the memory that it has: every field, bit for bit. What PointBatch has
+/// no place for comes as extra columns:
 ///
 /// - "scan_flags" u8: bits 0-3 synthetic, key point, withheld, overlap; 4-5 scanner channel; 6 scan direction;
 ///   7 edge of flight line. The older formats' flags are put where the formats 6-10 have them.

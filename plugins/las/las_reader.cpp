@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "base/parallel.h"
 #include "las/copc_hierarchy.h"
 #include "las/las_header.h"
 #include "las/las_points.h"
@@ -30,11 +31,17 @@ void checkBounds(LasHeader& header, const Bounds& found) {
                                "header offset 179"});
 }
 
-/// A batch and its bounds, made on any thread.
+/// A batch, made on any thread, and the bounds of all that were made in it.
 struct MadeBatch {
+  MadeBatch() = default;
   MadeBatch(const LasHeader& header, const std::byte* records, std::size_t count, bool unshifted) {
+    fill(header, records, count, unshifted);
+  }
+  void fill(const LasHeader& header, const std::byte* records, std::size_t count, bool unshifted) {
     decodeLasPoints(header, records, count, unshifted, batch);
-    for (const auto& position : batch.position) bounds.add(position);
+    Bounds here;  // in registers
+    for (const auto& position : batch.position) here.add(position);
+    bounds.add(here);
   }
   PointBatch batch;
   Bounds bounds;
@@ -84,6 +91,26 @@ Result<bool> coloursAreUnshifted(const ByteSource& file, const LasHeader& header
   return *all > 0 && *all <= 255;
 }
 
+/// A file that is about to be read to its end.
+struct OpenedFile {
+  std::shared_ptr<const ByteSource> file;
+  LasHeader header;
+  bool unshifted = false;  ///< coloursAreUnshifted
+
+  static Result<OpenedFile> open(const std::string& path, const Progress& progress) {
+    auto file = ByteSource::open(path);
+    if (!file) return fail(file.error());
+    auto header = readLasHeader(**file);
+    if (!header) return fail(header.error());
+    const auto unshifted = coloursAreUnshifted(**file, *header, progress);
+    if (!unshifted) return fail(unshifted.error());
+    if (*unshifted)
+      header->warnings.push_back({"Colours are stored as 8-bit numbers, against the standard; they are used as such",
+                                  "points"});
+    return OpenedFile{std::move(*file), std::move(*header), *unshifted};
+  }
+};
+
 }  // namespace
 
 ReaderDescription LasReader::description() const {
@@ -117,28 +144,40 @@ Result<ScanInfo> LasReader::inspect(const std::string& path) const {
 Result<std::vector<ImportWarning>> LasReader::read(const std::string& path,
                                                    const BatchSink& sink,
                                                    const Progress& progress) const {
-  const auto file = ByteSource::open(path);
-  if (!file) return fail(file.error());
-  auto header = readLasHeader(**file);
-  if (!header) return fail(header.error());
-  const auto unshifted = coloursAreUnshifted(**file, *header, progress.part(0.0, 0.1));
-  if (!unshifted) return fail(unshifted.error());
-  if (*unshifted)
-    header->warnings.push_back({"Colours are stored as 8-bit numbers, against the standard; they are used as such",
-                                "points"});
-
+  auto opened = OpenedFile::open(path, progress.part(0.0, 0.1));
+  if (!opened) return fail(opened.error());
+  LasHeader& header = opened->header;
   Bounds found;
   const MakeBatch make = [&](const std::byte* records, std::size_t count) -> std::function<bool()> {
-    auto made = std::make_shared<MadeBatch>(*header, records, count, *unshifted);
+    auto made = std::make_shared<MadeBatch>(header, records, count, opened->unshifted);
     return [made = std::move(made), &found, &sink] {
       found.add(made->bounds);
       return sink(made->batch);
     };
   };
-  if (auto ok = readAllPoints(**file, *header, make, progress.part(0.1, 1.0), readingWords(path)); !ok)
+  if (auto ok = readAllPoints(*opened->file, header, make, progress.part(0.1, 1.0), readingWords(path)); !ok)
     return fail(ok.error());
-  checkBounds(*header, found);
-  return header->warnings;
+  checkBounds(header, found);
+  return header.warnings;
+}
+
+Result<std::vector<ImportWarning>> LasReader::readAnyOrder(const std::string& path, const NumberedSink& sink,
+                                                           const Progress& progress) const {
+  auto opened = OpenedFile::open(path, progress.part(0.0, 0.1));
+  if (!opened) return fail(opened.error());
+  LasHeader& header = opened->header;
+  std::vector<MadeBatch> batches(static_cast<std::size_t>(workerCount()));
+  const TakeRecords take = [&](std::uint64_t first, const std::byte* records, std::size_t count, int worker) {
+    MadeBatch& made = batches[static_cast<std::size_t>(worker)];
+    made.fill(header, records, count, opened->unshifted);
+    return sink(first, made.batch);
+  };
+  if (auto ok = alidade::readAnyOrder(*opened->file, header, take, progress.part(0.1, 1.0), readingWords(path)); !ok)
+    return fail(ok.error());
+  Bounds found;
+  for (const MadeBatch& made : batches) found.add(made.bounds);
+  checkBounds(header, found);
+  return header.warnings;
 }
 
 Result<void> LasReader::sample(const std::string& path, std::uint64_t wanted, const BatchSink& sink,

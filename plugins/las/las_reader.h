@@ -24,6 +24,9 @@ class LasReader : public ScanReader {
   Result<std::vector<ImportWarning>> read(const std::string& path,
                                           const BatchSink& sink,
                                           const Progress& progress) const override;
+  bool readsAnyOrder() const override { return true; }
+  Result<std::vector<ImportWarning>> readAnyOrder(const std::string& path, const NumberedSink& sink,
+                                                  const Progress& progress) const override;
   /// Short blocks of a LAS file, the beginnings of a LAZ file's chunks.
   Result<void> sample(const std::string& path, std::uint64_t wanted, const BatchSink& sink,
                       const Progress& progress) const override;

@@ -4,6 +4,10 @@
 #include "las/las_runs.h"
 
 #include <algorithm>
+#include <atomic>
+#include <map>
+#include <mutex>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -13,7 +17,10 @@ namespace alidade {
 
 namespace {
 
-constexpr std::uint64_t kBatchPoints = 1 << 16;
+/// Records and what becomes of them are to stay in a core's own cache.
+constexpr std::uint64_t kBatchPoints = 1 << 14;
+/// Points that one thread reads at a time: between two such groups of tasks others may have the cores.
+constexpr std::uint64_t kGroupPoints = 1 << 18;
 /// A chunk whose records take more than this is decoded piece by piece.
 constexpr std::uint64_t kLargestRecords = 16 << 20;
 constexpr std::uint64_t kMostPointsPerByte = 2048;
@@ -73,8 +80,8 @@ class RunReader {
     return {};
   }
 
-  /// A chunk that is too large for one piece of memory.
-  Result<bool> readInPieces(const LasRun& run, const MakeBatch& make) {
+  /// A chunk that is too large for one piece of memory: piece by piece to `take`, which may stop it.
+  Result<bool> readInPieces(const LasRun& run, const std::function<bool(const std::byte* records, std::size_t count)>& take) {
     if (auto ok = start(*m_decoder, run, m_bytes); !ok) return fail(ok.error());
     std::vector<std::byte> records;
     for (std::uint64_t done = 0; done < run.count;) {
@@ -82,7 +89,7 @@ class RunReader {
       records.resize(count * m_header.recordLength);
       m_decoder->decode(count, records.data());
       if (m_decoder->overran()) return brokenChunk(m_file, run);
-      if (!make(records.data(), count)()) return false;
+      if (!take(records.data(), count)) return false;
       done += count;
     }
     return true;
@@ -128,9 +135,73 @@ std::vector<std::span<const LasRun>> tasksOf(const std::vector<LasRun>& runs, co
   return tasks;
 }
 
-struct TaskOutcome {
-  std::optional<Error> error;
-  std::vector<std::function<bool()>> batches;
+/// Runs on their way to records, group by group on all cores.
+class RunReading {
+ public:
+  RunReading(const ByteSource& file, const LasHeader& header, const std::vector<LasRun>& runs)
+      : m_header(header), m_tasks(tasksOf(runs, header)), m_records(static_cast<std::size_t>(workerCount())) {
+    for (int i = 0; i < workerCount(); ++i) m_readers.push_back(std::make_unique<RunReader>(file, header));
+    for (const LasRun& run : runs) m_total += run.count;
+  }
+
+  /// Nothing is left.
+  bool done() const { return m_next == m_tasks.size(); }
+  double fraction() const { return static_cast<double>(m_points) / static_cast<double>(std::max<std::uint64_t>(1, m_total)); }
+  /// Of points that were read.
+  std::uint64_t points() const { return m_points; }
+
+  /// Whether what comes next is a chunk that is too large to be decoded at once, and that chunk read, piece by piece.
+  bool nextIsLarge() const { return isLarge(m_tasks[m_next]); }
+  Result<bool> readLarge(const std::function<bool(const std::byte* records, std::size_t count)>& take) {
+    const LasRun& run = m_tasks[m_next++].front();
+    auto more = m_readers[0]->readInPieces(run, take);
+    m_points += run.count;
+    return more;
+  }
+
+  /// The next tasks, whatever of them can be read: `take` as TakeRecords.
+  template <class Take>
+  Result<void> readGroup(const Take& take) {
+    std::size_t end = m_next;
+    std::uint64_t points = 0;
+    std::vector<std::uint64_t> firsts;
+    const std::uint64_t most = kGroupPoints * static_cast<std::uint64_t>(workerCount());
+    while (end < m_tasks.size() && points < most && !isLarge(m_tasks[end])) {
+      firsts.push_back(m_points + points);
+      for (const LasRun& run : m_tasks[end]) points += run.count;
+      ++end;
+    }
+    std::vector<std::optional<Error>> errors(end - m_next);
+    parallelFor(end - m_next, 1, [&](std::size_t from, std::size_t to, int worker) {
+      const auto at = static_cast<std::size_t>(worker);
+      for (std::size_t i = from; i < to; ++i) {
+        if (auto ok = m_readers[at]->read(m_tasks[m_next + i], m_records[at]); !ok) {
+          errors[i] = ok.error();
+          continue;
+        }
+        const std::uint64_t count = m_records[at].size() / m_header.recordLength, batch = evenBatch(count);
+        for (std::uint64_t first = 0; first < count; first += batch)
+          take(firsts[i] + first, m_records[at].data() + first * m_header.recordLength, std::min(batch, count - first), worker);
+      }
+    });
+    m_next = end;
+    m_points += points;
+    for (const auto& error : errors)
+      if (error) return fail(*error);
+    return {};
+  }
+
+ private:
+  bool isLarge(std::span<const LasRun> task) const {
+    return m_header.laz && task.front().count * m_header.recordLength > kLargestRecords;
+  }
+
+  const LasHeader& m_header;
+  const std::vector<std::span<const LasRun>> m_tasks;
+  std::vector<std::unique_ptr<RunReader>> m_readers;
+  std::vector<std::vector<std::byte>> m_records;
+  std::size_t m_next = 0;
+  std::uint64_t m_points = 0, m_total = 0;
 };
 
 }  // namespace
@@ -149,51 +220,64 @@ Result<std::optional<std::vector<LasRun>>> runsOf(const ByteSource& file, const 
 
 Result<void> readRuns(const ByteSource& file, const LasHeader& header, const std::vector<LasRun>& runs,
                       const MakeBatch& make, const Progress& progress, const std::string& what) {
-  const auto tasks = tasksOf(runs, header);
-  std::uint64_t total = 0, done = 0;
-  for (const LasRun& run : runs) total += run.count;
-  std::vector<std::unique_ptr<RunReader>> readers(workerCount());
-  std::vector<std::vector<std::byte>> records(workerCount());
-  for (auto& reader : readers) reader = std::make_unique<RunReader>(file, header);
-
-  const std::size_t atOnce = 4 * static_cast<std::size_t>(workerCount());
-  for (std::size_t first = 0; first < tasks.size();) {
+  RunReading reading(file, header, runs);
+  while (!reading.done()) {
     if (progress.cancelled()) return fail(cancelledError());
-    progress.report(static_cast<double>(done) / static_cast<double>(std::max<std::uint64_t>(1, total)), what);
-    const std::uint64_t points = tasks[first].front().count;
-    if (header.laz && points * header.recordLength > kLargestRecords) {
-      const auto more = readers[0]->readInPieces(tasks[first].front(), make);
+    progress.report(reading.fraction(), what);
+    if (reading.nextIsLarge()) {
+      const auto more = reading.readLarge([&](const std::byte* records, std::size_t count) { return make(records, count)(); });
       if (!more) return fail(more.error());
       if (!*more) return {};
-      done += points;
-      ++first;
       continue;
     }
-    std::size_t end = first;
-    while (end < tasks.size() && end - first < atOnce &&
-           !(header.laz && tasks[end].front().count * header.recordLength > kLargestRecords))
-      ++end;
-    std::vector<TaskOutcome> outcomes(end - first);
-    parallelFor(end - first, 1, [&](std::size_t from, std::size_t to, int worker) {
-      for (std::size_t i = from; i < to; ++i) {
-        auto& buffer = records[worker];
-        if (auto ok = readers[worker]->read(tasks[first + i], buffer); !ok) {
-          outcomes[i].error = ok.error();
-          continue;
-        }
-        const std::uint64_t count = buffer.size() / header.recordLength, batch = evenBatch(count);
-        for (std::uint64_t at = 0; at < count; at += batch)
-          outcomes[i].batches.push_back(make(buffer.data() + at * header.recordLength, std::min(batch, count - at)));
-      }
-    });
-    for (std::size_t i = 0; i < outcomes.size(); ++i) {
-      if (outcomes[i].error) return fail(*outcomes[i].error);
-      for (auto& handOver : outcomes[i].batches)
-        if (!handOver()) return {};
-      for (const LasRun& run : tasks[first + i]) done += run.count;
+    std::map<std::uint64_t, std::function<bool()>> batches;  // by their first points
+    std::mutex mutex;
+    const auto keep = [&](std::uint64_t first, const std::byte* records, std::size_t count, int) {
+      auto batch = make(records, count);
+      std::lock_guard lock(mutex);
+      batches.emplace(first, std::move(batch));
+    };
+    if (auto ok = reading.readGroup(keep); !ok) return ok;
+    for (auto& [first, handOver] : batches) {
       if (progress.cancelled()) return fail(cancelledError());
+      if (!handOver()) return {};
     }
-    first = end;
+  }
+  progress.report(1.0, what);
+  return {};
+}
+
+Result<void> readAnyOrder(const ByteSource& file, const LasHeader& header, const TakeRecords& take, const Progress& progress,
+                          const std::string& what) {
+  if (header.pointCount == 0) return {};
+  const auto runs = runsOf(file, header);
+  if (!runs) return fail(runs.error());
+  std::uint64_t first = 0;
+  const auto takeNext = [&](const std::byte* records, std::size_t count) {
+    return take(std::exchange(first, first + count), records, count, 0);
+  };
+  if (!*runs) {
+    const MakeBatch make = [&](const std::byte* records, std::size_t count) -> std::function<bool()> {
+      return [more = takeNext(records, count)] { return more; };
+    };
+    return readWithoutTable(file, header, make, progress, what);
+  }
+  RunReading reading(file, header, **runs);
+  std::atomic<bool> stopped{false};
+  while (!reading.done() && !stopped) {
+    if (progress.cancelled()) return fail(cancelledError());
+    progress.report(reading.fraction(), what);
+    if (reading.nextIsLarge()) {
+      first = reading.points();
+      const auto more = reading.readLarge(takeNext);
+      if (!more) return fail(more.error());
+      stopped = !*more;
+      continue;
+    }
+    const auto give = [&](std::uint64_t at, const std::byte* records, std::size_t count, int worker) {
+      if (!stopped && !take(at, records, count, worker)) stopped = true;
+    };
+    if (auto ok = reading.readGroup(give); !ok) return ok;
   }
   progress.report(1.0, what);
   return {};

@@ -30,6 +30,14 @@ Result<void> readWithoutTable(const ByteSource& file, const LasHeader& header, c
 Result<void> readAllPoints(const ByteSource& file, const LasHeader& header, const MakeBatch& make,
                            const Progress& progress, const std::string& what);
 
+/// Takes records where they were decoded: on several threads at once, each with a number of its own below
+/// workerCount(). `first` is the place of the first record among all points; false to stop.
+using TakeRecords = std::function<bool(std::uint64_t first, const std::byte* records, std::size_t count, int worker)>;
+
+/// All points, in any order.
+Result<void> readAnyOrder(const ByteSource& file, const LasHeader& header, const TakeRecords& take, const Progress& progress,
+                          const std::string& what);
+
 /// Runs that hold about `wanted` points, spread evenly over the file.
 std::vector<LasRun> sampleOf(const std::vector<LasRun>& runs, const LasHeader& header, std::uint64_t wanted);
 

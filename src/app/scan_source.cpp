@@ -85,6 +85,13 @@ ScanSource scanSourceOf(const ScanReader& reader, const std::string& path, const
     if (warnings != nullptr) addOnce(*read, *warnings);
     return {};
   };
+  if (reader.readsAnyOrder())
+    source.readAnyOrder = [&reader, path, warnings](const ScanSource::NumberedSink& sink, const Progress& progress) -> Result<void> {
+      const auto read = reader.readAnyOrder(path, sink, progress);
+      if (!read) return fail(read.error());
+      if (warnings != nullptr) addOnce(*read, *warnings);
+      return {};
+    };
   source.sample = [&reader, path](std::uint64_t wanted, const ScanSource::Sink& sink, const Progress& progress) {
     return reader.sample(path, wanted, sink, progress);
   };

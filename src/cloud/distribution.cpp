@@ -4,13 +4,16 @@
 #include "cloud/distribution.h"
 
 #include <algorithm>
-#include <condition_variable>
+#include <array>
 #include <cstring>
-#include <deque>
+#include <memory>
 #include <mutex>
-#include <thread>
+#include <new>
 #include <type_traits>
 #include <unordered_map>
+
+#include "cloud/raw_bytes.h"
+#include "cloud/scan_reading.h"
 
 namespace alidade {
 
@@ -18,65 +21,9 @@ namespace {
 
 constexpr std::uint32_t kOtherStreams = 8;
 
-/// Batches on their way from the reader to the workers, and empty ones on their way back: first touch of
-/// fresh memory costs more than filling it.
-class BatchQueue {
- public:
-  struct Item {
-    std::uint64_t number = 0;
-    PointBatch batch;
-  };
-  explicit BatchQueue(std::size_t most) : m_most(most) {}
-
-  /// Takes the batch's columns, gives it used ones instead. False where the work has stopped.
-  bool push(std::uint64_t number, PointBatch& batch) {
-    std::unique_lock lock(m_mutex);
-    m_changed.wait(lock, [&] { return m_full.size() < m_most || m_stopped; });
-    if (m_stopped) return false;
-    m_full.push_back({number, {}});
-    std::swap(m_full.back().batch, batch);
-    if (!m_empty.empty()) {
-      std::swap(batch, m_empty.back());
-      m_empty.pop_back();
-    }
-    lock.unlock();
-    m_changed.notify_all();
-    return true;
-  }
-  bool pop(Item& item) {
-    std::unique_lock lock(m_mutex);
-    if (item.batch.size() > 0 && m_empty.size() < m_most) m_empty.push_back(std::move(item.batch));
-    m_changed.wait(lock, [&] { return !m_full.empty() || m_ended || m_stopped; });
-    if (m_full.empty() || m_stopped) return false;
-    item = std::move(m_full.front());
-    m_full.pop_front();
-    lock.unlock();
-    m_changed.notify_all();
-    return true;
-  }
-  void end() {
-    std::lock_guard lock(m_mutex);
-    m_ended = true;
-    m_changed.notify_all();
-  }
-  void stop() {
-    std::lock_guard lock(m_mutex);
-    m_stopped = true;
-    m_changed.notify_all();
-  }
-
- private:
-  std::size_t m_most;
-  std::mutex m_mutex;
-  std::condition_variable m_changed;
-  std::deque<Item> m_full;
-  std::vector<PointBatch> m_empty;
-  bool m_ended = false, m_stopped = false;
-};
-
 /// Leaves out the points that cannot be used. Returns how many.
 std::uint64_t dropUnusable(PointBatch& batch) {
-  if (std::all_of(batch.position.begin(), batch.position.end(), isUsablePosition)) return 0;
+  if (areUsablePositions(batch.position)) return 0;
   std::vector<std::uint32_t> good;
   for (std::size_t i = 0; i < batch.size(); ++i)
     if (isUsablePosition(batch.position[i])) good.push_back(static_cast<std::uint32_t>(i));
@@ -136,8 +83,6 @@ class Worker {
     const std::size_t count = batch.size();
     if (count == 0) return Outcome::Done;
     if (!m_schema.covers(batch)) return Outcome::NewColumns;
-    m_units.resize(count);
-    if (!m_lattice.unitsOf(batch.position, m_units.data(), nullptr)) return Outcome::OffLattice;
     if (!pack(batch)) return Outcome::OffLattice;
     send(number, count);
     return Outcome::Done;
@@ -148,28 +93,37 @@ class Worker {
   std::uint64_t dropped() const { return m_dropped; }
 
  private:
-  /// The batch as records, and the cell of each.
+  /// The batch as records, and the cell of each; false where a point does not fit the lattice.
   bool pack(const PointBatch& batch) {
     const std::size_t count = batch.size(), stride = m_layout.bytes;
     m_records.resize(count * stride);
     m_cells.resize(count);
-    m_colours.resize(count);
-    displayColours(batch, m_brightest, m_colours.data());
-    for (std::size_t i = 0; i < count; ++i) {
-      const glm::i64vec3& unit = m_units[i];
-      const glm::ivec3 tile(unit >> std::int64_t{16});
-      const glm::u16vec3 place(unit & std::int64_t{0xffff});
-      std::uint32_t cell = m_finder.find(tile, place);
-      if (cell == ChunkPlan::kNone) cell = otherCell(tile);
-      m_cells[i] = cell;
-      const std::uint64_t packed = static_cast<std::uint64_t>(place.x) | static_cast<std::uint64_t>(place.y) << 16 |
-                                   static_cast<std::uint64_t>(place.z) << 32 | static_cast<std::uint64_t>(m_colours[i]) << 48;
-      std::memcpy(m_records.data() + i * stride, &packed, sizeof packed);
+    const PointSchema::Packing packing(m_schema, batch);
+    // A stretch after the other: what one column leaves is at hand for the next.
+    constexpr std::size_t kStretch = 256;
+    std::array<glm::i64vec3, kStretch> units;
+    std::array<std::uint16_t, kStretch> colours;
+    for (std::size_t first = 0; first < count; first += kStretch) {
+      const std::size_t some = std::min(kStretch, count - first);
+      std::byte* out = m_records.data() + first * stride;
+      if (!m_lattice.unitsOf(std::span(batch.position).subspan(first, some), units.data(), nullptr)) return false;
+      displayColours(batch, m_brightest, first, some, colours.data());
+      for (std::size_t i = 0; i < some; ++i) {
+        const glm::i64vec3& unit = units[i];
+        const glm::ivec3 tile(unit >> std::int64_t{16});
+        const glm::u16vec3 place(unit & std::int64_t{0xffff});
+        std::uint32_t cell = m_finder.find(tile, place);
+        if (cell == ChunkPlan::kNone) cell = otherCell(tile);
+        m_cells[first + i] = cell;
+        const std::uint64_t packed = static_cast<std::uint64_t>(place.x) | static_cast<std::uint64_t>(place.y) << 16 |
+                                     static_cast<std::uint64_t>(place.z) << 32 | static_cast<std::uint64_t>(colours[i]) << 48;
+        std::memcpy(out + i * stride, &packed, sizeof packed);
+      }
+      if (m_lattice.exactBytes() > 0)
+        for (std::size_t i = 0; i < some; ++i)
+          if (!m_lattice.packExact(batch.position[first + i], out + i * stride + m_layout.exactAt)) return false;
+      packing.pack(first, some, out + m_layout.columnsAt, stride);
     }
-    if (m_lattice.exactBytes() > 0)
-      for (std::size_t i = 0; i < count; ++i)
-        if (!m_lattice.packExact(batch.position[i], m_records.data() + i * stride + m_layout.exactAt)) return false;
-    m_schema.pack(batch, m_records.data() + m_layout.columnsAt, stride);
     return true;
   }
 
@@ -234,10 +188,8 @@ class Worker {
   OtherCells& m_others;
   CellFinder m_finder;
   RecordStreams::Writer m_writer;
-  std::vector<glm::i64vec3> m_units;
-  std::vector<std::byte> m_records;
+  RawVector<std::byte> m_records;
   std::vector<std::uint32_t> m_cells;
-  std::vector<std::uint16_t> m_colours;
   std::vector<std::uint32_t> m_inBatch, m_next, m_met, m_sorted;  ///< by cell, by cell, cells, points
   std::vector<std::uint64_t> m_counts;
   std::unordered_map<glm::ivec3, std::uint32_t, TileHash> m_otherIds;
@@ -257,37 +209,25 @@ Result<DistributionResult> distribute(const ScanSource& source, const ChunkPlan&
   DistributionResult result;
   result.schema = schema;
   OtherCells others(static_cast<std::uint32_t>(plan.cells().size()), plan.streamCount());
-  BatchQueue queue(static_cast<std::size_t>(options.threads) + 1);
   std::mutex mutex;
   std::vector<std::unique_ptr<Worker>> workers;
-  std::vector<std::thread> threads;
   bool outOfMemory = false;
   for (int t = 0; t < options.threads; ++t)
     workers.push_back(std::make_unique<Worker>(plan, lattice, schema, options.brightestIntensity, others, streams));
-  for (int t = 0; t < options.threads; ++t) {
-    threads.emplace_back([&, worker = workers[static_cast<std::size_t>(t)].get()] {
-      try {
-        BatchQueue::Item item;
-        while (queue.pop(item)) {
-          const auto outcome = worker->take(item.number, item.batch);
-          if (outcome == DistributionResult::Outcome::Done) continue;
-          std::lock_guard lock(mutex);
-          result.outcome = outcome;
-          if (outcome == DistributionResult::Outcome::NewColumns) result.schema.include(item.batch);
-          queue.stop();
-        }
-      } catch (const std::bad_alloc&) {
-        std::lock_guard lock(mutex);
-        outOfMemory = true;
-        queue.stop();
-      }
-    });
-  }
-  std::uint64_t number = 0;
-  const auto read = source.read([&](PointBatch& batch) { return !progress.cancelled() && queue.push(number++, batch); }, progress);
-  if (read) queue.end();
-  else queue.stop();
-  for (std::thread& thread : threads) thread.join();
+  const auto take = [&](std::uint64_t number, PointBatch& batch, int worker) {
+    try {
+      const auto outcome = workers[static_cast<std::size_t>(worker)]->take(number, batch);
+      if (outcome == DistributionResult::Outcome::Done) return true;
+      std::lock_guard lock(mutex);
+      result.outcome = outcome;
+      if (outcome == DistributionResult::Outcome::NewColumns) result.schema.include(batch);
+    } catch (const std::bad_alloc&) {
+      std::lock_guard lock(mutex);
+      outOfMemory = true;
+    }
+    return false;
+  };
+  const auto read = readOnThreads(source, options.threads, take, progress);
   Result<void> written;
   for (auto& worker : workers) {
     if (auto done = worker->writer().finish(); !done && written) written = done;

@@ -96,6 +96,14 @@ struct LatticeAxes {
   }
 };
 
+ALIDADE_WIDEST bool areUsable(const double* coordinates, std::size_t count) {
+  constexpr double kFarthestMeters = 1e8;
+  std::uint64_t wrong = 0;
+  // NaN fails every comparison.
+  for (std::size_t i = 0; i < count; ++i) wrong |= static_cast<std::uint64_t>(!(std::abs(coordinates[i]) <= kFarthestMeters));
+  return wrong == 0;
+}
+
 /// False where a coordinate is not on the lattice, or beyond what tiles can count.
 ALIDADE_WIDEST bool unitsOfBlock(const LatticeAxes& axes, const double* positions, std::size_t count, std::int64_t* units) {
   constexpr auto kFarthest = static_cast<std::int64_t>(kFarthestUnit);
@@ -122,9 +130,11 @@ ALIDADE_WIDEST bool unitsOfBlock(const LatticeAxes& axes, const double* position
 }  // namespace
 
 bool isUsablePosition(const glm::dvec3& p) {
-  constexpr double kFarthestMeters = 1e8;
-  // NaN fails every comparison.
-  return std::abs(p.x) <= kFarthestMeters && std::abs(p.y) <= kFarthestMeters && std::abs(p.z) <= kFarthestMeters;
+  return areUsable(&p.x, 3);
+}
+
+bool areUsablePositions(std::span<const glm::dvec3> positions) {
+  return positions.empty() || areUsable(&positions[0].x, 3 * positions.size());
 }
 
 bool Lattice::unitsOf(std::span<const glm::dvec3> positions, glm::i64vec3* units, std::size_t* failedAt) const {

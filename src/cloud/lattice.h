@@ -57,6 +57,8 @@ struct Lattice {
 /// False for a point that is not finite, or farther than 10^8 m from the origin (no survey's coordinates
 /// are; one such point would cost all others their resolution).
 bool isUsablePosition(const glm::dvec3& position);
+/// None of them is such.
+bool areUsablePositions(std::span<const glm::dvec3> positions);
 
 /// What is known of the source's coordinates when the lattice is chosen.
 struct LatticeEvidence {

@@ -120,17 +120,24 @@ std::size_t PointSchema::bytes() const {
   return all;
 }
 
-void PointSchema::pack(const PointBatch& batch, std::byte* out, std::size_t stride) const {
+PointSchema::Packing::Packing(const PointSchema& schema, const PointBatch& batch) {
   const std::vector<ColumnView> views = viewsOf(batch);
-  for (const ColumnShape& column : columns) {
+  for (const ColumnShape& column : schema.columns) {
     const auto view = std::find_if(views.begin(), views.end(), [&](const ColumnView& v) { return v.shape == column; });
-    if (view == views.end()) {
-      for (std::size_t i = 0; i < batch.size(); ++i) std::memset(out + i * stride, 0, column.bytes());
+    const bool widened = !column.extra && column.name == "rgb" && batch.rgbWhite < schema.rgbWhite;
+    m_columns.push_back({view == views.end() ? nullptr : view->data, column.bytes(), widened});
+  }
+}
+
+void PointSchema::Packing::pack(std::size_t first, std::size_t count, std::byte* out, std::size_t stride) const {
+  for (const Column& column : m_columns) {
+    if (column.data == nullptr) {
+      for (std::size_t i = 0; i < count; ++i) std::memset(out + i * stride, 0, column.bytes);
     } else {
-      scatterBytes(view->data, column.bytes(), batch.size(), out, stride);
-      if (!column.extra && column.name == "rgb" && batch.rgbWhite < rgbWhite) widenColours(out, batch.size(), stride);
+      scatterBytes(column.data + first * column.bytes, column.bytes, count, out, stride);
+      if (column.widened) widenColours(out, count, stride);
     }
-    out += column.bytes();
+    out += column.bytes;
   }
 }
 
@@ -149,19 +156,19 @@ void PointSchema::unpack(std::size_t index, const std::byte* bytes, std::size_t 
   });
 }
 
-void displayColours(const PointBatch& batch, std::uint16_t brightestIntensity, std::uint16_t* out) {
-  const std::size_t count = batch.size();
-  if (batch.rgb.size() == count) {
+void displayColours(const PointBatch& batch, std::uint16_t brightestIntensity, std::size_t first, std::size_t count,
+                    std::uint16_t* out) {
+  if (batch.rgb.size() == batch.size()) {
     const int shift = batch.rgbWhite > 255 ? 8 : 0;
     for (std::size_t i = 0; i < count; ++i) {
-      const glm::u16vec3& c = batch.rgb[i];
+      const glm::u16vec3& c = batch.rgb[first + i];
       out[i] = rgb565(c.r >> shift & 255, c.g >> shift & 255, c.b >> shift & 255);
     }
-  } else if (batch.intensity.size() == count && brightestIntensity > 0) {
+  } else if (batch.intensity.size() == batch.size() && brightestIntensity > 0) {
     // Returns are few and bright at the top of the range: the root keeps the dark majority readable.
     const float white = 1.0f / brightestIntensity;
     for (std::size_t i = 0; i < count; ++i) {
-      const auto gray = static_cast<unsigned>(255.0f * std::sqrt(std::min(1.0f, batch.intensity[i] * white)) + 0.5f);
+      const auto gray = static_cast<unsigned>(255.0f * std::sqrt(std::min(1.0f, batch.intensity[first + i] * white)) + 0.5f);
       out[i] = rgb565(gray, gray, gray);
     }
   } else {

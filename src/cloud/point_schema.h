@@ -42,17 +42,32 @@ struct PointSchema {
   bool covers(const PointBatch& batch) const;
   std::size_t bytes() const;
 
-  /// Writes this schema's columns of all points of the batch: record i at out + i * stride, columns one
-  /// after the other. The batch is covered.
-  void pack(const PointBatch& batch, std::byte* out, std::size_t stride) const;
+  class Packing;
   /// Puts `count` values of column `index`, one after the other at `bytes`, where they belong in `batch`.
   void unpack(std::size_t index, const std::byte* bytes, std::size_t count, PointBatch& batch) const;
 
   friend bool operator==(const PointSchema&, const PointSchema&) = default;
 };
 
-/// The colour to draw a batch's points with: RGB, else intensity as gray, else a middle gray.
+/// How the points of one batch, which the schema covers, become records.
+class PointSchema::Packing {
+ public:
+  Packing(const PointSchema& schema, const PointBatch& batch);
+  /// Writes the schema's columns of points first to first + count: one after the other, record i at out + i * stride.
+  void pack(std::size_t first, std::size_t count, std::byte* out, std::size_t stride) const;
+
+ private:
+  struct Column {
+    const std::byte* data;  ///< null: the batch has none, its points count as zeros
+    std::size_t bytes;
+    bool widened;  ///< 8-bit colours
+  };
+  std::vector<Column> m_columns;
+};
+
+/// The colours to draw a batch's points first to first + count with: RGB, else intensity as gray, else a middle gray.
 /// `brightestIntensity` is what white stands for.
-void displayColours(const PointBatch& batch, std::uint16_t brightestIntensity, std::uint16_t* rgb565);
+void displayColours(const PointBatch& batch, std::uint16_t brightestIntensity, std::size_t first, std::size_t count,
+                    std::uint16_t* rgb565);
 
 }  // namespace alidade

@@ -23,6 +23,10 @@ struct ScanSource {
   std::string identity;  ///< changes when the source does: path, size, time
   ScanInfo info;
   std::function<Result<void>(const Sink& sink, const Progress& progress)> read;
+  /// The same points, handed over on the threads that made them, several at once; `number` tells the order that `read`
+  /// would have. Empty: the source has no threads of its own.
+  using NumberedSink = std::function<bool(std::uint64_t number, PointBatch& batch)>;
+  std::function<Result<void>(const NumberedSink& sink, const Progress& progress)> readAnyOrder;
   /// About `wanted` points taken evenly from the whole; empty: `read` is thinned.
   std::function<Result<void>(std::uint64_t wanted, const Sink& sink, const Progress& progress)> sample;
 };

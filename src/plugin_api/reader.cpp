@@ -16,6 +16,11 @@ std::string_view textOf(const FileProbe& probe) {
 
 }  // namespace
 
+Result<std::vector<ImportWarning>> ScanReader::readAnyOrder(const std::string& path, const NumberedSink& sink,
+                                                            const Progress& progress) const {
+  return read(path, [&sink, number = std::uint64_t{0}](PointBatch& batch) mutable { return sink(number++, batch); }, progress);
+}
+
 Result<void> ScanReader::sample(const std::string& path, std::uint64_t wanted, const BatchSink& sink,
                                 const Progress& progress) const {
   const auto info = inspect(path);

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <span>
@@ -64,6 +65,10 @@ class Reader {
 /// Returns false to stop early, which is no error.
 using BatchSink = std::function<bool(PointBatch& batch)>;
 
+/// Takes a run of points on the thread that made it, on several threads at once. Runs ordered by their numbers stand in
+/// the file's order. As a BatchSink it may take the columns away, and stops early with false.
+using NumberedSink = std::function<bool(std::uint64_t number, PointBatch& batch)>;
+
 class ScanReader : public Reader {
  public:
   ReaderKind kind() const final { return ReaderKind::Scan; }
@@ -72,6 +77,12 @@ class ScanReader : public Reader {
   /// Hands over all points in file order, in batches of at most some 100 k, on the calling thread.
   virtual Result<std::vector<ImportWarning>> read(const std::string& path, const BatchSink& sink,
                                                   const Progress& progress) const = 0;
+  /// Whether readAnyOrder uses several threads.
+  virtual bool readsAnyOrder() const { return false; }
+  /// The same points as `read` in any order: nothing waits for its turn, and nothing goes from one core to another.
+  /// Here: as `read`.
+  virtual Result<std::vector<ImportWarning>> readAnyOrder(const std::string& path, const NumberedSink& sink,
+                                                          const Progress& progress) const;
   /// Hands over about `wanted` points taken evenly from the whole file, as fast as the format allows:
   /// for a first picture. Here: every n-th of all points.
   virtual Result<void> sample(const std::string& path, std::uint64_t wanted, const BatchSink& sink,

@@ -112,6 +112,10 @@ Result<IndexReport> index(const Site& site, std::uint64_t memoryBytes) {
     if (auto read = reader.read(site.las, sink, progress); !read) return fail(read.error());
     return {};
   };
+  scan.readAnyOrder = [&](const ScanSource::NumberedSink& sink, const Progress& progress) -> Result<void> {
+    if (auto read = reader.readAnyOrder(site.las, sink, progress); !read) return fail(read.error());
+    return {};
+  };
   scan.sample = [&](std::uint64_t wanted, const ScanSource::Sink& sink, const Progress& progress) {
     return reader.sample(site.las, wanted, sink, progress);
   };

@@ -3,6 +3,9 @@
 
 #include <sys/stat.h>
 
+#include <atomic>
+#include <thread>
+
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -58,6 +61,31 @@ TEST(StoreFolder, HoldsTheSameAsAStoreInMemory) {
       for (const auto& [name, content] : test::filesOf(path)) EXPECT_FALSE(name.ends_with(".tmp")) << name;
     }
   }
+}
+
+TEST(StoreFolder, IsTheSameWhateverTheOrderThatThreadsReadIn) {
+  const test::ScratchFolder scratch;
+  ScanSource scan = hallScan(kPoints);
+  const auto memory = test::inMemory(scan);
+  // Runs of any size, the last first, on more threads than work on them.
+  scan.readAnyOrder = [](const ScanSource::NumberedSink& sink, const Progress&) -> Result<void> {
+    std::atomic<std::int64_t> left{kPoints};
+    std::vector<std::thread> threads;
+    for (int t = 0; t < 5; ++t)
+      threads.emplace_back([&, count = 7001 + 500 * t] {
+        for (std::int64_t end = left.fetch_sub(count); end > 0; end = left.fetch_sub(count)) {
+          const auto first = static_cast<std::uint64_t>(std::max<std::int64_t>(0, end - count));
+          PointBatch batch = test::hallPoints(first, static_cast<std::uint64_t>(end) - first, 1);
+          if (!sink(first, batch)) return;
+        }
+      });
+    for (std::thread& thread : threads) thread.join();
+    return {};
+  };
+  ASSERT_TRUE(index(scan, scratch / "any.alidade-points", optionsOf()));
+  const auto store = openStore(scratch / "any.alidade-points");
+  ASSERT_TRUE(store) << store.error().text();
+  EXPECT_EQ(difference(*memory, *store->parts[0].points), "");
 }
 
 TEST(StoreFolder, KeepsWhatTheScanSaysOfItself) {

@@ -4,14 +4,17 @@
 #include "las/las_writer.h"
 
 #include <algorithm>
+#include <atomic>
 #include <filesystem>
 #include <map>
+#include <mutex>
 #include <numeric>
 #include <random>
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
+#include "base/parallel.h"
 #include "las/copc_hierarchy.h"
 #include "unit/las/all_points.h"
 #include "unit/las/las_file_maker.h"
@@ -312,6 +315,32 @@ TEST(CopcWriter, CellsAreNeededAndComeOnce) {
   const OctreeCell root, below{1, 0, 0, 0};
   EXPECT_THAT(writeAll(Kind::Copc, pathFor("a.copc.laz"), options, {{batch, root}, {batch, below}, {batch, root}}),
               HasSubstr("comes twice"));
+}
+
+TEST(LasReading, PointsComeInAnyOrderWithTheirPlacesAndInColumnsThatAreUsedAgain) {
+  const PointBatch points = wildPoints(300000, false, true, false, false);
+  for (const Kind kind : {Kind::Las, Kind::Laz}) {
+    const std::string path = pathFor("any-order.laz");
+    ASSERT_EQ(writeAll(kind, path, wildOptions(), {{points, {}}}), "");
+    std::map<std::uint64_t, PointBatch> runs;
+    std::mutex mutex;
+    const auto sink = [&](std::uint64_t number, PointBatch& batch) {
+      std::lock_guard lock(mutex);
+      runs[number] = batch;
+      if (number % 3 == 0) batch.extra.clear(), batch.gpsTime = {}, batch.position.pop_back();  // whatever a sink leaves
+      return true;
+    };
+    const auto read = LasReader().readAnyOrder(path, sink, alidade::Progress());
+    ASSERT_TRUE(read.has_value()) << read.error().text();
+    PointBatch all;
+    for (const auto& [number, batch] : runs) alidade::testing::appendBatch(all, batch);
+    expectSamePoints(all, readEverything(path).all, path);
+    EXPECT_EQ(all.size(), points.size());
+    std::atomic<int> calls{0};
+    const auto stop = [&](std::uint64_t, PointBatch&) { return ++calls, false; };
+    EXPECT_TRUE(LasReader().readAnyOrder(path, stop, alidade::Progress()).has_value());
+    EXPECT_LE(calls, alidade::workerCount());
+  }
 }
 
 TEST(LasSample, ASampleIsEvenHasEveryColumnAndAboutTheWantedSize) {
