@@ -7,6 +7,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <utility>
 
 #include "cloud/morton.h"
@@ -75,6 +76,30 @@ ALIDADE_WIDEST void readKeys(const std::uint64_t* keys, std::size_t count, std::
   for (std::size_t i = 0; i < count; ++i) x[i] = static_cast<std::uint16_t>(gatherBits(code[i]));
   for (std::size_t i = 0; i < count; ++i) y[i] = static_cast<std::uint16_t>(gatherBits(code[i] >> 1));
   for (std::size_t i = 0; i < count; ++i) z[i] = static_cast<std::uint16_t>(gatherBits(code[i] >> 2));
+}
+
+/// The coarsest pass at which a point of this level was accepted: it was rejected at the one after.
+inline int coarsestPassOf(std::int16_t level) {
+  return std::max((level >> 6) + 1, kCoarsestPass);
+}
+
+/// How far a point that is accepted from this pass on keeps others away, units.
+inline std::int32_t reachOf(int from) {
+  return from > kFinestPass ? 0 : std::int32_t{1} << (kFinestPass - from);
+}
+
+constexpr std::size_t kMarked = 512;
+
+/// Sets to 1 what stands for points nearer to a face of a cell than they keep others away. A point whose level is
+/// undecided has level 0, and reaches as far or farther by it.
+ALIDADE_WIDEST void markNearFaces(const std::array<std::int32_t, 3>& low, const std::array<std::int32_t, 3>& high, const std::uint16_t* x,
+                                  const std::uint16_t* y, const std::uint16_t* z, const std::int16_t* level, std::size_t count,
+                                  std::uint8_t* near) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::int32_t fromX = std::min(x[i] - low[0], high[0] - x[i]), fromY = std::min(y[i] - low[1], high[1] - y[i]),
+                       fromZ = std::min(z[i] - low[2], high[2] - z[i]);
+    near[i] = static_cast<std::uint8_t>(std::min(std::min(fromX, fromY), fromZ) < reachOf(coarsestPassOf(level[i])));
+  }
 }
 
 /// A run of the list that becomes the node `node`.
@@ -163,7 +188,7 @@ void sortCell(const PlanCell& cell, std::span<const std::uint64_t> packed, SortK
   auto& keys = sort.keys;
   keys.resize(count);
   makeKeys(packed.data(), count, inCell, drop, rowBits, keys.data());
-  radixSort(keys, sort.scratch, rowBits, bits);
+  sortKeys(keys, sort.scratch, rowBits + bits);
   points.code.resize(count), points.row.resize(count);
   points.x.resize(count), points.y.resize(count), points.z.resize(count);
   points.level.assign(count, 0);
@@ -207,15 +232,25 @@ std::vector<BorderSample> borderSamples(const PlanCell& cell, const CellPoints& 
   std::vector<BorderSample> samples;
   const glm::ivec3 low = cell.corner(), high = low + cell.size() - 1;
   std::size_t next = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    int from = (points.level[i] >> 6) + 1;  // rejected at pass floor(level): accepted at all finer ones
-    if (next < undecided.size() && undecided[next] == i) from = cell.depth, ++next;
-    from = std::max(from, kCoarsestPass);
-    if (from > kFinestPass) continue;
-    const std::int32_t reach = std::int32_t{1} << (kFinestPass - from);
+  const auto look = [&](std::size_t i) {
+    int from = coarsestPassOf(points.level[i]);
+    while (next < undecided.size() && undecided[next] < i) ++next;
+    if (next < undecided.size() && undecided[next] == i) from = std::max<int>(cell.depth, kCoarsestPass);
     const std::int32_t x = points.x[i], y = points.y[i], z = points.z[i];
     const std::int32_t inside = std::min({x - low.x, y - low.y, z - low.z, high.x - x, high.y - y, high.z - z});
-    if (inside < reach) samples.push_back({points.x[i], points.y[i], points.z[i], static_cast<std::int16_t>(from)});
+    if (inside < reachOf(from)) samples.push_back({points.x[i], points.y[i], points.z[i], static_cast<std::int16_t>(from)});
+  };
+  std::array<std::uint8_t, kMarked> near;
+  for (std::size_t first = 0; first < points.size(); first += kMarked) {
+    const std::size_t count = std::min(kMarked, points.size() - first);
+    near.fill(0);
+    markNearFaces({low.x, low.y, low.z}, {high.x, high.y, high.z}, points.x.data() + first, points.y.data() + first,
+                  points.z.data() + first, points.level.data() + first, count, near.data());
+    for (std::size_t at = 0; at < count; at += sizeof(std::uint64_t)) {
+      std::uint64_t some;
+      std::memcpy(&some, near.data() + at, sizeof some);
+      for (; some != 0; some &= some - 1) look(first + at + static_cast<std::size_t>(std::countr_zero(some)) / 8);
+    }
   }
   return samples;
 }

@@ -8,8 +8,9 @@
 
 namespace alidade {
 
-/// Sorts keys by their bits [from, from + bits), least significant digit first: stable, so that what stands below
-/// and is in order stays so. `scratch` is overwritten; it keeps its memory for the next call.
-void radixSort(RawVector<std::uint64_t>& keys, RawVector<std::uint64_t>& scratch, int from, int bits);
+/// Sorts keys that are below 2^bits, ascending. A radix sort of the highest bits, as many as tell most of the keys
+/// apart; what they leave is a few neighbours out of order, and is put right by insertion. `scratch` is overwritten;
+/// it keeps its memory for the next call.
+void sortKeys(RawVector<std::uint64_t>& keys, RawVector<std::uint64_t>& scratch, int bits);
 
 }  // namespace alidade

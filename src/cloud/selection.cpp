@@ -117,7 +117,7 @@ void sortFrontToBack(std::vector<Candidate>& candidates) {
   RawVector<std::uint64_t> keys(candidates.size());
   for (std::size_t i = 0; i < keys.size(); ++i) keys[i] = std::uint64_t{std::bit_cast<std::uint32_t>(candidates[i].squaredDistance)} << 32 | i;
   RawVector<std::uint64_t> scratch;
-  radixSort(keys, scratch, 32, 31);
+  sortKeys(keys, scratch, 63);
   std::vector<Candidate> sorted;
   sorted.reserve(candidates.size());
   for (const std::uint64_t key : keys) sorted.push_back(candidates[key & 0xffffffff]);
