@@ -9,7 +9,12 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <numeric>
 #include <utility>
+
+#if defined(__x86_64__)
+#include <emmintrin.h>
+#endif
 
 #include <glm/glm.hpp>
 
@@ -39,12 +44,15 @@ constexpr int kSpacingBits = 12;
 /// Added to coordinates before they are cut into bricks: none is negative then, and no block straddles a tile's edge.
 constexpr std::int32_t kBias = 1 << 19;
 /// Bricks with fewer points than this on average are taken in groups: registers are to be filled.
-constexpr std::size_t kFewInBrick = 5;
+constexpr std::size_t kFewInBrick = 7;
 constexpr std::uint64_t kEveryBlock = ~std::uint64_t{0};
+constexpr std::uint64_t kScatter = 0x9e3779b97f4a7c15ull;
+constexpr std::uint8_t kFirst = 127;  ///< split bits of a point without one before it
 
-/// Where a brick stands in its block.
+/// Where a brick stands in its block: the Morton code of two bits an axis.
 std::uint32_t placeInBlock(std::int32_t x, std::int32_t y, std::int32_t z) {
-  return static_cast<std::uint32_t>(mortonOf(static_cast<std::uint64_t>(x & 3), static_cast<std::uint64_t>(y & 3), static_cast<std::uint64_t>(z & 3)));
+  const auto spread = [](std::int32_t v) { return static_cast<std::uint32_t>((v & 1) | (v & 2) << 2); };
+  return spread(x) | spread(y) << 1 | spread(z) << 2;
 }
 
 /// By the Morton code of the first brick of the group, whose edge is `edge` bricks.
@@ -75,28 +83,70 @@ const std::array<Neighbourhood, 64>& neighbourhoods(int edge) {
 }
 
 /// 32 log2(m) for m = 1 + (i + 0.5) / 256.
-std::array<std::int16_t, 256> logTable() {
-  std::array<std::int16_t, 256> table{};
-  for (int i = 0; i < 256; ++i) table[i] = static_cast<std::int16_t>(std::lround(32.0 * std::log2(1.0 + (i + 0.5) / 256.0)));
+std::array<std::int32_t, 256> logTable() {
+  std::array<std::int32_t, 256> table{};
+  for (int i = 0; i < 256; ++i) table[i] = static_cast<std::int32_t>(std::lround(32.0 * std::log2(1.0 + (i + 0.5) / 256.0)));
   return table;
 }
 
-const std::array<std::int16_t, 256> kLogTable = logTable();
+const std::array<std::int32_t, 256> kLogTable = logTable();
 
-/// 64 (10 - log2(d)) for d² = squared << 2 shift units²; more than any level for 0.
-inline int levelStepOf(float squared, int shift) {
-  const auto bits = std::bit_cast<std::uint32_t>(squared);
-  const int log32 = (static_cast<int>(bits >> 23) - 127) * 32 + kLogTable[bits >> 15 & 255];
-  return kFinestPass * kLevelSteps - log32 - shift * kLevelSteps;
+constexpr std::size_t kRated = 256;
+
+/// Levels of points of a pass by their squared distances d² << 2 shift: 64 (10 - log2(d)), more than any for 0; of
+/// accepted ones 0.
+ALIDADE_WIDEST void levelsOf(const float* squared, std::size_t count, int shift, int shallowest, int deepest,
+                             std::int32_t* __restrict levels) {
+  const std::int32_t* __restrict table = kLogTable.data();
+  const std::int32_t most = (kFinestPass - shift) * kLevelSteps + 127 * 32;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto bits = std::bit_cast<std::int32_t>(squared[i]);
+    std::int32_t level = most - ((bits >> 23 & 255) * 32 + table[bits >> 15 & 255]);
+    level = level < shallowest ? shallowest : level;
+    level = level > deepest ? deepest : level;
+    levels[i] = level & ~(bits >> 31);
+  }
 }
 
 /// Levels of the rejected points of a pass.
-ALIDADE_WIDEST void rate(const float* squared, const std::uint32_t* index, std::size_t count, int shift, int shallowest, int deepest,
-                         std::int16_t* levels) {
-  for (std::size_t i = 0; i < count; ++i) {
-    const int level = std::clamp(levelStepOf(squared[i], shift), shallowest, deepest);
-    levels[index[i]] = static_cast<std::int16_t>(squared[i] >= 0 ? level : 0);
+void rate(const float* squared, const std::uint32_t* index, std::size_t count, int shift, int shallowest, int deepest,
+          std::int16_t* levels) {
+  std::array<std::int32_t, kRated> some;
+  for (std::size_t first = 0; first < count; first += kRated) {
+    const std::size_t n = std::min(kRated, count - first);
+    levelsOf(squared + first, n, shift, shallowest, deepest, some.data());
+    for (std::size_t i = 0; i < n; ++i) levels[index[first + i]] = static_cast<std::int16_t>(some[i]);
   }
+}
+
+/// A column of places as floats.
+ALIDADE_WIDEST void widen(const std::uint16_t* from, std::size_t count, float* to) {
+  for (std::size_t i = 0; i < count; ++i) to[i] = from[i];
+}
+
+/// Axis bits up to the highest in which a point and the one before it differ; of the first point nothing.
+ALIDADE_WIDEST void findSplits(const std::uint16_t* x, const std::uint16_t* y, const std::uint16_t* z, std::size_t count, std::uint8_t* bits) {
+  for (std::size_t i = 1; i < count; ++i) {
+    const std::int32_t differing = (x[i] ^ x[i - 1]) | (y[i] ^ y[i - 1]) | (z[i] ^ z[i - 1]);
+    // A whole number below 2^16 is exact as a float, whose exponent is its highest bit.
+    const std::int32_t width = (std::bit_cast<std::int32_t>(static_cast<float>(differing)) >> 23) - 126;
+    bits[i] = static_cast<std::uint8_t>(width > 0 ? width : 0);
+  }
+}
+
+/// One bit for each of 64 numbers that exceeds the limit; all below 128.
+std::uint64_t exceeding(const std::uint8_t* numbers, int limit) {
+  std::uint64_t bits = 0;
+#if defined(__x86_64__)
+  const __m128i limits = _mm_set1_epi8(static_cast<char>(limit));
+  for (int part = 0; part < 4; ++part) {
+    const __m128i some = _mm_loadu_si128(reinterpret_cast<const __m128i*>(numbers + 16 * part));
+    bits |= static_cast<std::uint64_t>(static_cast<std::uint32_t>(_mm_movemask_epi8(_mm_cmpgt_epi8(some, limits)))) << 16 * part;
+  }
+#else
+  for (int i = 0; i < 64; ++i) bits |= static_cast<std::uint64_t>(numbers[i] > limit) << i;
+#endif
+  return bits;
 }
 
 using Choose = std::size_t (*)(const blue_noise::Pass&);
@@ -125,7 +175,7 @@ struct BlueNoise::Spacing {
 };
 
 void BlueNoise::Survivors::reserve(std::size_t points) {
-  const std::size_t size = points + kLanes;
+  const std::size_t size = points + std::max<std::size_t>(kLanes, 64);  // 64 split bits are looked at at a time
   if (x.size() >= size) return;
   x.resize(size), y.resize(size), z.resize(size);
   splitBits.resize(size);
@@ -134,14 +184,13 @@ void BlueNoise::Survivors::reserve(std::size_t points) {
 
 BlueNoise::Slot* BlueNoise::slotOf(std::uint64_t code) {
   // The product's upper bits depend on all of the code's.
-  for (std::uint64_t at = (code * 0x9e3779b97f4a7c15ull) >> m_tableShift;; ++at) {
+  for (std::uint64_t at = (code * kScatter) >> m_tableShift;; ++at) {
     Slot* slot = &m_table[at & m_tableMask];
     if (slot->key == 0 || slot->key == code + 1) return slot;
   }
 }
 
 std::array<std::uint32_t, 27> BlueNoise::blocksAround(std::int32_t x, std::int32_t y, std::int32_t z, std::uint64_t limit) {
-  std::array<std::uint32_t, 27> around;
   std::array<std::array<std::uint64_t, 3>, 3> spread;
   for (int d = -1; d <= 1; ++d) {
     const auto at = static_cast<std::size_t>(d + 1);
@@ -149,11 +198,20 @@ std::array<std::uint32_t, 27> BlueNoise::blocksAround(std::int32_t x, std::int32
     spread[1][at] = spreadBits(static_cast<std::uint64_t>(y + d)) << 1;
     spread[2][at] = spreadBits(static_cast<std::uint64_t>(z + d)) << 2;
   }
+  std::array<std::uint64_t, 27> codes;
+  for (std::size_t n = 0; n < 27; ++n) codes[n] = spread[0][n % 3] | spread[1][n / 3 % 3] | spread[2][n / 9];
+  // The first slot nearly always tells; which way cannot be predicted, and is not.
+  std::array<std::uint32_t, 27> around;
+  std::uint32_t open = 0;
   for (std::size_t n = 0; n < 27; ++n) {
-    const std::uint64_t code = spread[0][n % 3] | spread[1][n / 3 % 3] | spread[2][n / 9];
-    around[n] = kNone;
-    if (code >= limit) continue;
-    if (const Slot* slot = slotOf(code); slot->key != 0) around[n] = slot->block;
+    const Slot& slot = m_table[(codes[n] * kScatter) >> m_tableShift & m_tableMask];
+    const bool wanted = codes[n] < limit, isIt = slot.key == codes[n] + 1;
+    around[n] = wanted & isIt ? slot.block : kNone;
+    open |= static_cast<std::uint32_t>(wanted & !isIt & (slot.key != 0)) << n;
+  }
+  for (; open != 0; open &= open - 1) {
+    const auto n = static_cast<std::size_t>(std::countr_zero(open));
+    if (const Slot* slot = slotOf(codes[n]); slot->key != 0) around[n] = slot->block;
   }
   return around;
 }
@@ -162,9 +220,7 @@ std::array<std::uint32_t, 27> BlueNoise::blocksAround(std::int32_t x, std::int32
 void BlueNoise::layBricks(const Spacing& spacing) {
   m_bricks.clear();
   m_blocks.clear();
-  for (std::uint32_t i = 0; i < m_alive.count; ++i) {
-    if (i > 0 && m_alive.splitBits[i] <= spacing.brickBits) continue;
-    if (i > 0) m_bricks.back().last = i;
+  const auto begin = [&](std::uint32_t i) {
     const std::int32_t x = spacing.brickOf(m_alive.x[i]), y = spacing.brickOf(m_alive.y[i]), z = spacing.brickOf(m_alive.z[i]);
     if (i == 0 || m_alive.splitBits[i] > spacing.brickBits + 2) {
       Block& block = m_blocks.emplace_back();
@@ -172,7 +228,14 @@ void BlueNoise::layBricks(const Spacing& spacing) {
       block.firstBrick = static_cast<std::uint32_t>(m_bricks.size());
     }
     m_blocks.back().filled |= std::uint64_t{1} << placeInBlock(x, y, z);
+    if (i > 0) m_bricks.back().last = i;
     m_bricks.push_back({i, 0});
+  };
+  m_alive.splitBits[0] = kFirst;
+  for (std::uint32_t first = 0; first < m_alive.count; first += 64) {
+    std::uint64_t starts = exceeding(m_alive.splitBits.data() + first, spacing.brickBits);
+    if (m_alive.count - first < 64) starts &= (std::uint64_t{1} << (m_alive.count - first)) - 1;
+    for (; starts != 0; starts &= starts - 1) begin(first + static_cast<std::uint32_t>(std::countr_zero(starts)));
   }
   m_bricks.back().last = static_cast<std::uint32_t>(m_alive.count);
   m_tableMask = std::bit_ceil(2 * m_blocks.size() + 16) - 1;
@@ -266,14 +329,11 @@ std::vector<std::uint32_t> BlueNoise::thin(const TilePoints& points, std::span<c
   const std::size_t count = points.x.size();
   m_alive.reserve(count);
   m_alive.count = count;
-  for (std::size_t i = 0; i < count; ++i) {
-    m_alive.index[i] = static_cast<std::uint32_t>(i);
-    m_alive.x[i] = points.x[i], m_alive.y[i] = points.y[i], m_alive.z[i] = points.z[i];
-  }
-  for (std::size_t i = 1; i < count; ++i) {
-    const auto differing = static_cast<std::uint32_t>((points.x[i] ^ points.x[i - 1]) | (points.y[i] ^ points.y[i - 1]) | (points.z[i] ^ points.z[i - 1]));
-    m_alive.splitBits[i] = static_cast<std::uint8_t>(std::bit_width(differing));
-  }
+  std::iota(m_alive.index.begin(), m_alive.index.begin() + static_cast<std::ptrdiff_t>(count), 0u);
+  widen(points.x.data(), count, m_alive.x.data());
+  widen(points.y.data(), count, m_alive.y.data());
+  widen(points.z.data(), count, m_alive.z.data());
+  findSplits(points.x.data(), points.y.data(), points.z.data(), count, m_alive.splitBits.data());
   const int shift = std::max(0, kFinestPass - finest - kSpacingBits);
   for (auto* column : {&m_alive.x, &m_alive.y, &m_alive.z})
     for (std::size_t i = 0; shift > 1 && i < count; ++i) (*column)[i] = std::floor(std::ldexp((*column)[i], 1 - shift));

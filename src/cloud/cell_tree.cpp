@@ -8,6 +8,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <numeric>
 #include <utility>
 
 #include "cloud/morton.h"
@@ -60,8 +61,8 @@ std::uint64_t codeOf(std::uint64_t packed) {
 }
 
 /// Sort keys: what is wanted of the Morton code, above the row.
-ALIDADE_WIDEST void makeKeys(const std::uint64_t* packed, std::size_t count, std::uint64_t inCell, int drop, int rowBits,
-                             std::uint64_t* keys) {
+ALIDADE_WIDEST void makeKeys(const std::uint64_t* __restrict packed, std::size_t count, std::uint64_t inCell, int drop, int rowBits,
+                             std::uint64_t* __restrict keys) {
   for (std::size_t i = 0; i < count; ++i) keys[i] = (codeOf(packed[i]) & inCell) >> drop << rowBits | i;
 }
 
@@ -108,24 +109,23 @@ struct Pending {
   std::uint32_t node;
 };
 
-void addPoint(BuildNode& node, const glm::i64vec3& unit) {
-  if (!node.hasBounds()) node.low = node.high = unit;
-  node.low = glm::min(node.low, unit);
-  node.high = glm::max(node.high, unit);
-}
-
 /// Appends `kept` to the tree as the node's points, sorted by level step, and its table.
 void settle(BuildNode& node, std::span<const std::uint32_t> kept, const CellPoints& points, SubTree& tree) {
   node.first = tree.order.size();
   node.count = static_cast<std::uint32_t>(kept.size());
   node.tableOffset = tree.tables.size();
   if (kept.empty()) return;
-  std::int16_t low = points.level[kept[0]], high = low;
-  const glm::i64vec3 base = glm::i64vec3(node.tile) << std::int64_t{16};
+  int low = points.level[kept[0]], high = low;
+  glm::ivec3 least(65535), most(0);
+  const std::uint16_t *x = points.x.data(), *y = points.y.data(), *z = points.z.data();
+  const std::int16_t* level = points.level.data();
   for (const std::uint32_t i : kept) {
-    low = std::min(low, points.level[i]), high = std::max(high, points.level[i]);
-    addPoint(node, base + glm::i64vec3(points.x[i], points.y[i], points.z[i]));
+    low = std::min<int>(low, level[i]), high = std::max<int>(high, level[i]);
+    const glm::ivec3 place(x[i], y[i], z[i]);
+    least = glm::min(least, place), most = glm::max(most, place);
   }
+  const glm::i64vec3 base = glm::i64vec3(node.tile) << std::int64_t{16};
+  node.low = base + glm::i64vec3(least), node.high = base + glm::i64vec3(most);
   node.firstBucket = low;
   node.bucketCount = static_cast<std::uint32_t>(high - low + 1);
   std::vector<std::uint32_t> next(node.bucketCount + 1, 0);
@@ -259,15 +259,20 @@ SubTree buildCellTree(const PlanCell& cell, const CellPoints& points, std::span<
                       const TreeOptions& options) {
   SubTree tree;
   if (points.size() == undecided.size()) return tree;
-  std::vector<std::uint32_t> list;
-  list.reserve(points.size() - undecided.size());
-  for (std::size_t i = 0, next = 0; i < points.size(); ++i) {
-    if (next < undecided.size() && undecided[next] == i) ++next;
-    else list.push_back(static_cast<std::uint32_t>(i));
-  }
+  std::vector<std::uint32_t> list(points.size() - undecided.size());
+  auto decided = list.begin();
+  std::uint32_t first = 0;
+  const auto addUntil = [&](std::uint32_t end) {
+    std::iota(decided, decided + (end - first), first);
+    decided += end - first;
+    first = end + 1;
+  };
+  for (const std::uint32_t i : undecided) addUntil(i);
+  addUntil(static_cast<std::uint32_t>(points.size()));
   tree.order.reserve(list.size());
+  const std::vector<PlaceBox> boxes = boxesOf(points);
   const int deepest = 15 - points.droppedBits;
-  std::vector<std::uint32_t> kept;
+  std::vector<std::uint32_t> keptHere;
   std::vector<Pending> generation{{0, list.size(), 0}};
   tree.nodes.resize(1);
   while (!generation.empty()) {
@@ -281,19 +286,23 @@ SubTree buildCellTree(const PlanCell& cell, const CellPoints& points, std::span<
       const std::span<const std::uint32_t> run(list.data() + pending.first, pending.last - pending.first);
       if (run.size() <= options.leafPoints || node.depth >= deepest) {
         settle(node, run, points, tree);
-        node.spacingUnits = spacingOf(run, points, pointsInCube(points, node));
+        node.spacingUnits = spacingOf(run, points, boxes, pointsInCube(points, node));
         tree.nodes[pending.node] = node;
         continue;
       }
-      kept.clear();
       end = pending.first;
+      keptHere.resize(std::max(keptHere.size(), run.size()));
       const int limit = (node.depth + 1) * kLevelSteps;
-      for (std::size_t i = pending.first; i < pending.last; ++i) {
-        if (points.level[list[i]] < limit) kept.push_back(list[i]);
-        else list[end++] = list[i];
+      std::size_t keptCount = 0;
+      for (std::size_t i = pending.first; i < pending.last; ++i) {  // both are written, one goes on: nothing to predict
+        const std::uint32_t point = list[i];
+        const bool below = points.level[point] < limit;
+        keptHere[keptCount] = point, list[end] = point;
+        keptCount += below, end += !below;
       }
+      const std::span<const std::uint32_t> kept(keptHere.data(), keptCount);
       settle(node, kept, points, tree);
-      if (end == pending.first) node.spacingUnits = spacingOf(kept, points, pointsInCube(points, node));
+      if (end == pending.first) node.spacingUnits = spacingOf(kept, points, boxes, pointsInCube(points, node));
       const int shift = 3 * (15 - node.depth);
       const auto octantOf = [&](std::uint32_t i) { return points.code[i] >> shift & 7; };
       for (std::size_t from = pending.first; from < end;) {

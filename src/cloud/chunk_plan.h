@@ -68,23 +68,23 @@ class CellFinder {
 
   /// The cell that holds a place of a tile, or ChunkPlan::kNone for a tile that the sample did not meet.
   std::uint32_t find(const glm::ivec3& tile, const glm::u16vec3& place) {
-    Met& met = m_met[static_cast<std::uint64_t>(TileHash()(tile)) >> 58];
+    Met& met = m_met[static_cast<std::size_t>((tile.x & 3) | (tile.y & 3) << 2 | (tile.z & 3) << 4)];
     if (tile != met.tile || met.grid == nullptr) {
       const auto found = m_plan.m_tiles.find(tile);
       if (found == m_plan.m_tiles.end()) return ChunkPlan::kNone;
-      met = {tile, &found->second};
+      met = {tile, found->second.depth, found->second.grid.data()};
     }
-    const ChunkPlan::TileGrid& grid = *met.grid;
-    const int shift = 16 - grid.depth;
+    const int shift = 16 - met.depth;
     const std::uint32_t x = static_cast<std::uint32_t>(place.x) >> shift, y = static_cast<std::uint32_t>(place.y) >> shift,
                         z = static_cast<std::uint32_t>(place.z) >> shift;
-    return grid.grid[(z << grid.depth | y) << grid.depth | x];
+    return met.grid[(z << met.depth | y) << met.depth | x];
   }
 
  private:
   struct Met {
     glm::ivec3 tile{0};
-    const ChunkPlan::TileGrid* grid = nullptr;
+    int depth = 0;
+    const std::uint32_t* grid = nullptr;
   };
   const ChunkPlan& m_plan;
   std::array<Met, 64> m_met;

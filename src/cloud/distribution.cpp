@@ -122,7 +122,7 @@ class Worker {
       if (m_lattice.exactBytes() > 0)
         for (std::size_t i = 0; i < some; ++i)
           if (!m_lattice.packExact(batch.position[first + i], out + i * stride + m_layout.exactAt)) return false;
-      packing.pack(first, some, out + m_layout.columnsAt, stride);
+      packing.pack(first, some, out + m_layout.columnsAt, stride, stride - m_layout.columnsAt);
     }
     return true;
   }

@@ -8,8 +8,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <utility>
 #include <vector>
+
+#include <glm/glm.hpp>
 
 #include "cloud/cell_tree.h"
 
@@ -26,85 +27,83 @@ namespace {
 
 constexpr std::size_t kNeighbours = 8;
 constexpr std::size_t kPlaces = 7;
-constexpr std::size_t kRun = 64;
 
-/// Places in Morton order, and the boxes of each kRun of them.
+/// A node's points, and the boxes of the stretches of its cell that hold them.
 struct Places {
-  std::vector<float> x, y, z;
-  struct Box {
-    std::array<float, 3> low, high;
-  };
-  std::vector<Box> boxes;
+  std::span<const std::uint32_t> run;  ///< indices into the cell's points, ascending
+  const CellPoints& points;
+  std::span<const PlaceBox> boxes;
 
-  /// Rounded as the points' own distances are: never more than that of a point inside.
-  float squaredDistanceTo(const Box& box, std::size_t at) const {
-    float squared = 0;
-    for (const auto& [value, axis] : {std::pair{x[at], 0}, std::pair{y[at], 1}, std::pair{z[at], 2}}) {
-      const float apart = std::max({box.low[static_cast<std::size_t>(axis)] - value, value - box.high[static_cast<std::size_t>(axis)], 0.0f});
-      squared += apart * apart;
-    }
-    return squared;
-  }
+  glm::vec3 at(std::uint32_t i) const { return {points.x[i], points.y[i], points.z[i]}; }
 };
 
-ALIDADE_WIDE void findBoxes(Places& p) {
-  const std::array<const float*, 3> columns{p.x.data(), p.y.data(), p.z.data()};
-  for (std::size_t first = 0; first < p.x.size(); first += kRun) {
-    const std::size_t last = std::min(first + kRun, p.x.size());
-    Places::Box& box = p.boxes.emplace_back();
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      float low = columns[axis][first], high = low;
-      for (std::size_t i = first; i < last; ++i) {
-        low = columns[axis][i] < low ? columns[axis][i] : low;
-        high = columns[axis][i] > high ? columns[axis][i] : high;
-      }
-      box.low[axis] = low, box.high[axis] = high;
-    }
+/// Rounded as the points' own distances are: never more than that of a point inside.
+float squaredDistanceTo(const PlaceBox& box, const glm::vec3& place) {
+  float squared = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto at = static_cast<std::size_t>(axis);
+    const float apart = std::max({static_cast<float>(box.low[at]) - place[axis], place[axis] - static_cast<float>(box.high[at]), 0.0f});
+    squared += apart * apart;
   }
+  return squared;
 }
 
 using Nearest = std::array<float, kNeighbours>;
 
-/// Takes the run's places other than `at` among the k nearest.
-ALIDADE_WIDE void look(const Places& p, std::size_t run, std::size_t at, std::size_t k, Nearest& nearest) {
-  std::array<float, kRun> squared;
-  const std::size_t first = run * kRun, n = std::min(kRun, p.x.size() - first);
-  const float *x = p.x.data() + first, *y = p.y.data() + first, *z = p.z.data() + first;
-  const float atX = p.x[at], atY = p.y[at], atZ = p.z[at];
-  for (std::size_t i = 0; i < n; ++i) {
-    const float dx = x[i] - atX, dy = y[i] - atY, dz = z[i] - atZ;
-    squared[i] = dx * dx + dy * dy + dz * dz;
-  }
-  for (std::size_t i = 0; i < n; ++i) {
-    if (squared[i] >= nearest[k - 1] || first + i == at) continue;
+/// Takes the node's points of a stretch, other than `self`, among the k nearest.
+void look(const Places& p, std::size_t stretch, std::uint32_t self, const glm::vec3& place, std::size_t k, Nearest& nearest) {
+  const auto first = std::lower_bound(p.run.begin(), p.run.end(), stretch * kPlacesInBox);
+  for (auto i = first; i != p.run.end() && *i < (stretch + 1) * kPlacesInBox; ++i) {
+    const glm::vec3 apart = p.at(*i) - place;
+    const float squared = apart.x * apart.x + apart.y * apart.y + apart.z * apart.z;
+    if (squared >= nearest[k - 1] || *i == self) continue;
     std::size_t slot = k - 1;
-    for (; slot > 0 && nearest[slot - 1] > squared[i]; --slot) nearest[slot] = nearest[slot - 1];
-    nearest[slot] = squared[i];
+    for (; slot > 0 && nearest[slot - 1] > squared; --slot) nearest[slot] = nearest[slot - 1];
+    nearest[slot] = squared;
   }
 }
 
-/// Squared distance from place `at` to its k-th nearest among the others.
-float neighbourDistanceSquared(const Places& p, std::size_t at, std::size_t k) {
+/// Squared distance from a point to its k-th nearest among the node's others.
+float neighbourDistanceSquared(const Places& p, std::uint32_t self, std::size_t k) {
   Nearest nearest;
   nearest.fill(std::numeric_limits<float>::max());
-  look(p, at / kRun, at, k, nearest);
-  for (std::size_t run = 0; run < p.boxes.size(); ++run)
-    if (run != at / kRun && p.squaredDistanceTo(p.boxes[run], at) < nearest[k - 1]) look(p, run, at, k, nearest);
+  const glm::vec3 place = p.at(self);
+  const std::size_t own = self / kPlacesInBox;
+  look(p, own, self, place, k, nearest);
+  const std::size_t first = p.run.front() / kPlacesInBox, last = p.run.back() / kPlacesInBox;
+  for (std::size_t stretch = first; stretch <= last; ++stretch)
+    if (stretch != own && squaredDistanceTo(p.boxes[stretch], place) < nearest[k - 1]) look(p, stretch, self, place, k, nearest);
   return nearest[k - 1];
+}
+
+ALIDADE_WIDE void findBox(const std::uint16_t* column, std::size_t count, std::uint16_t* low, std::uint16_t* high) {
+  std::uint16_t least = column[0], most = column[0];
+  for (std::size_t i = 1; i < count; ++i) {
+    least = column[i] < least ? column[i] : least;
+    most = column[i] > most ? column[i] : most;
+  }
+  *low = least, *high = most;
 }
 
 }  // namespace
 
-float spacingOf(std::span<const std::uint32_t> run, const CellPoints& points, std::size_t together) {
+std::vector<PlaceBox> boxesOf(const CellPoints& points) {
+  std::vector<PlaceBox> boxes((points.size() + kPlacesInBox - 1) / kPlacesInBox);
+  const std::array<const std::uint16_t*, 3> columns{points.x.data(), points.y.data(), points.z.data()};
+  for (std::size_t b = 0; b < boxes.size(); ++b) {
+    const std::size_t first = b * kPlacesInBox, count = std::min(kPlacesInBox, points.size() - first);
+    for (std::size_t axis = 0; axis < 3; ++axis) findBox(columns[axis] + first, count, &boxes[b].low[axis], &boxes[b].high[axis]);
+  }
+  return boxes;
+}
+
+float spacingOf(std::span<const std::uint32_t> run, const CellPoints& points, std::span<const PlaceBox> boxes, std::size_t together) {
   if (run.size() < 2) return 0;
-  Places places;
-  places.x.reserve(run.size()), places.y.reserve(run.size()), places.z.reserve(run.size());
-  for (const std::uint32_t i : run) places.x.push_back(points.x[i]), places.y.push_back(points.y[i]), places.z.push_back(points.z[i]);
-  findBoxes(places);
+  const Places places{run, points, boxes};
   const std::size_t k = std::min(kNeighbours, run.size() - 1), count = std::min(kPlaces, run.size());
   std::vector<double> sides;
   for (std::size_t i = 0; i < count; ++i) {
-    const double squared = neighbourDistanceSquared(places, (2 * i + 1) * run.size() / (2 * count), k);
+    const double squared = neighbourDistanceSquared(places, run[(2 * i + 1) * run.size() / (2 * count)], k);
     sides.push_back(std::sqrt(std::numbers::pi * squared / static_cast<double>(k)));
   }
   std::nth_element(sides.begin(), sides.begin() + static_cast<std::ptrdiff_t>(sides.size() / 2), sides.end());

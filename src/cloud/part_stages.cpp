@@ -48,11 +48,38 @@ std::uint64_t placeOf(const std::byte* record) {
   return packed & 0xffffffffffffull;
 }
 
+/// Calls what copies records with their length, as a constant where it is a usual one.
+template <class Copy>
+void withLength(std::size_t bytes, const Copy& copy) {
+  switch (bytes) {
+    case 8: return copy(std::integral_constant<std::size_t, 8>{});
+    case 16: return copy(std::integral_constant<std::size_t, 16>{});
+    case 24: return copy(std::integral_constant<std::size_t, 24>{});
+    case 32: return copy(std::integral_constant<std::size_t, 32>{});
+    case 40: return copy(std::integral_constant<std::size_t, 40>{});
+    default: return copy(bytes);
+  }
+}
+
+/// Records from `from`, `stride` apart, to one after the other: those of these indices, in their order.
+void gatherRecords(const std::byte* from, std::size_t stride, const std::uint32_t* indices, std::size_t count, std::size_t bytes,
+                   std::byte* to) {
+  withLength(bytes, [&](auto length) {
+    constexpr std::size_t kAhead = 24;
+    const std::size_t hinted = count > kAhead ? count - kAhead : 0;
+    for (std::size_t i = 0; i < hinted; ++i) {
+      __builtin_prefetch(from + indices[i + kAhead] * stride);
+      std::memcpy(to + i * std::size_t{length}, from + indices[i] * stride, length);
+    }
+    for (std::size_t i = hinted; i < count; ++i) std::memcpy(to + i * std::size_t{length}, from + indices[i] * stride, length);
+  });
+}
+
 /// Bytes of `width` from each record, one after the other.
-void gatherColumn(const std::byte* const* records, std::size_t count, std::size_t at, std::size_t width, std::byte* out) {
+void takeColumn(const std::byte* records, std::size_t stride, std::size_t count, std::size_t width, std::byte* out) {
   const auto copy = [&](auto fixed) {
     constexpr std::size_t kWidth = decltype(fixed)::value;
-    for (std::size_t i = 0; i < count; ++i) std::memcpy(out + i * kWidth, records[i] + at, kWidth);
+    for (std::size_t i = 0; i < count; ++i) std::memcpy(out + i * kWidth, records + i * stride, kWidth);
   };
   switch (width) {
     case 1: copy(std::integral_constant<std::size_t, 1>{}); break;
@@ -63,7 +90,7 @@ void gatherColumn(const std::byte* const* records, std::size_t count, std::size_
     case 12: copy(std::integral_constant<std::size_t, 12>{}); break;
     case 24: copy(std::integral_constant<std::size_t, 24>{}); break;
     default:
-      for (std::size_t i = 0; i < count; ++i) std::memcpy(out + i * width, records[i] + at, width);
+      for (std::size_t i = 0; i < count; ++i) std::memcpy(out + i * width, records + i * stride, width);
   }
 }
 
@@ -215,8 +242,8 @@ bool PartStages::readNote(const std::vector<std::byte>& bytes) {
 }
 
 std::uint64_t PartStages::costOf(std::uint32_t stream) const {
-  // Records as loaded and as written, keys twice, places, lists of two passes, the tree's lists.
-  return m_streamPoints[stream] * (2 * m_layout.bytes + 8 + 110);
+  // Records as loaded, in both orders and as written, keys twice, places, lists of two passes, the tree's lists.
+  return m_streamPoints[stream] * (4 * m_layout.bytes + 8 + 100);
 }
 
 void PartStages::releaseBorders(std::uint32_t stream) {
@@ -228,9 +255,8 @@ void PartStages::releaseBorders(std::uint32_t stream) {
   if (m_waiting[stream] == 0) free(stream);
 }
 
-/// Appends the tree's points, in its order, to the output; `rowOf` gives each point's record.
-void PartStages::emit(Output& output, const SubTree& tree, const std::vector<const std::byte*>& records,
-                      std::span<const std::uint32_t> rowOf, CellDone& done) {
+/// Appends the tree's points, in its order, to the output; its point i is the record at records + i * stride.
+void PartStages::emit(Output& output, const SubTree& tree, const std::byte* records, std::size_t stride, CellDone& done) {
   done.nodes = tree.nodes;
   auto& tables = output.columns[PartSink::kTables];
   for (BuildNode& node : done.nodes) {
@@ -240,24 +266,22 @@ void PartStages::emit(Output& output, const SubTree& tree, const std::vector<con
   const auto* from = reinterpret_cast<const std::byte*>(tree.tables.data());
   tables.insert(tables.end(), from, from + tree.tables.size() * sizeof(std::uint32_t));
 
-  constexpr std::size_t kBlock = 256;
-  std::array<const std::byte*, kBlock> block;
   std::vector<std::size_t> widths{kPointBytes, m_lattice.exactBytes()};
   for (const ColumnShape& column : m_schema.columns) widths.push_back(column.bytes());
   const std::uint64_t first = output.points;
   output.points += tree.order.size();
   const auto columnOf = [](std::size_t i) { return i < 2 ? i : i - 2 + PartSink::kFirstAttribute; };
   for (std::size_t i = 0; i < widths.size(); ++i) output.columns[columnOf(i)].resize(output.points * widths[i]);
+  // Some records at a time: their columns are then taken from the nearest memory there is.
+  constexpr std::size_t kBlock = 256;
+  std::vector<std::byte> block(kBlock * m_layout.bytes);
   for (std::size_t start = 0; start < tree.order.size(); start += kBlock) {
     const std::size_t count = std::min(kBlock, tree.order.size() - start);
-    for (std::size_t i = 0; i < count; ++i) {
-      block[i] = records[rowOf[tree.order[start + i]]];
-      __builtin_prefetch(block[i]);
-    }
+    gatherRecords(records, stride, tree.order.data() + start, count, m_layout.bytes, block.data());
     std::size_t at = 0;
     for (std::size_t i = 0; i < widths.size(); ++i) {
       if (widths[i] > 0)
-        gatherColumn(block.data(), count, at, widths[i], output.columns[columnOf(i)].data() + (first + start) * widths[i]);
+        takeColumn(block.data() + at, m_layout.bytes, count, widths[i], output.columns[columnOf(i)].data() + (first + start) * widths[i]);
       at += widths[i];
     }
   }
@@ -270,7 +294,7 @@ void PartStages::Output::clear() {
 }
 
 Result<void> PartStages::buildStream(std::uint32_t stream, Workshop& shop) {
-  auto& [noise, sort, points, records, packed, output] = shop;
+  auto& [noise, sort, points, records, sorted, packed, output] = shop;
   output.clear();
   output.columns.resize(columnCount());
   auto loaded = m_streams->load(m_usedStreams[stream]);
@@ -294,17 +318,19 @@ Result<void> PartStages::buildStream(std::uint32_t stream, Workshop& shop) {
   std::size_t next = 0;
   for (const std::uint32_t c : m_cellsOf[stream]) {
     const PlanCell& cell = m_spread.cells[c].cell;
-    records.clear(), packed.clear();
-    records.reserve(m_spread.cells[c].count), packed.reserve(m_spread.cells[c].count);
+    const std::uint64_t count = m_spread.cells[c].count;
+    records.resize(count * m_layout.bytes), packed.resize(count), sorted.resize(count * m_layout.bytes);
+    std::uint64_t taken = 0;
     for (; next < runs.size() && runs[next].cell == c; ++next) {
-      for (std::uint32_t i = 0; i < runs[next].count; ++i) {
-        records.push_back(runs[next].records + i * m_layout.bytes);
-        packed.push_back(placeOf(records.back()));
-      }
+      const Run& run = runs[next];
+      if (run.count > count - taken) return damaged();
+      std::memcpy(records.data() + taken * m_layout.bytes, run.records, run.count * m_layout.bytes);
+      for (std::uint32_t i = 0; i < run.count; ++i) packed[taken + i] = placeOf(run.records + i * m_layout.bytes);
+      taken += run.count;
     }
-    if (records.size() != m_spread.cells[c].count)
-      return damaged();
+    if (taken != count) return damaged();
     sortCell(cell, packed, sort, points);
+    gatherRecords(records.data(), m_layout.bytes, points.row.data(), count, m_layout.bytes, sorted.data());
     const int coarsest = cell.depth > 0 ? cell.depth : kCoarsestPass;
     std::vector<Obstacle> obstacles;
     if (m_tree.kind == LevelKind::BlueNoise) {
@@ -316,14 +342,14 @@ Result<void> PartStages::buildStream(std::uint32_t stream, Workshop& shop) {
     const std::vector<std::uint32_t> undecided = assignLevels(cell, points, obstacles, m_tree, noise);
     CellDone done;
     if (m_tree.kind == LevelKind::BlueNoise) done.borders = borderSamples(cell, points, undecided);
-    emit(output, buildCellTree(cell, points, undecided, m_tree), records, points.row, done);
+    emit(output, buildCellTree(cell, points, undecided, m_tree), sorted.data(), m_layout.bytes, done);
     done.topsAt = tops.size();
     done.tops = static_cast<std::uint32_t>(undecided.size());
     tops.resize(done.topsAt + undecided.size() * (kTopHeader + m_layout.bytes));
     std::byte* out = tops.data() + done.topsAt;
     for (const std::uint32_t i : undecided) {
       std::memcpy(out, &points.level[i], sizeof(std::int16_t));
-      std::memcpy(out + kTopHeader, records[points.row[i]], m_layout.bytes);
+      std::memcpy(out + kTopHeader, sorted.data() + i * m_layout.bytes, m_layout.bytes);
       out += kTopHeader + m_layout.bytes;
     }
     output.cells.emplace_back(c, std::move(done));
@@ -349,18 +375,16 @@ Result<void> PartStages::buildTile(std::uint32_t t, Workshop& shop) {
     if (auto ok = m_sink.read(PartSink::kTops, done.topsAt, std::span(bytes).subspan(at)); !ok) return fail(ok.error());
     top.cellDepth.insert(top.cellDepth.end(), done.tops, static_cast<std::int8_t>(cells.back().depth));
   }
-  std::vector<const std::byte*> records;
   for (std::size_t at = 0; at < bytes.size(); at += each) {
     const std::uint64_t place = placeOf(bytes.data() + at + kTopHeader);
     std::int16_t level;
     std::memcpy(&level, bytes.data() + at, sizeof level);
-    top.points.row.push_back(static_cast<std::uint32_t>(records.size()));
+    top.points.row.push_back(static_cast<std::uint32_t>(top.points.row.size()));
     top.points.x.push_back(static_cast<std::uint16_t>(place));
     top.points.y.push_back(static_cast<std::uint16_t>(place >> 16));
     top.points.z.push_back(static_cast<std::uint16_t>(place >> 32));
     top.points.code.push_back(mortonOf(place & 0xffff, place >> 16 & 0xffff, place >> 32 & 0xffff));
     top.points.level.push_back(level);
-    records.push_back(bytes.data() + at + kTopHeader);
   }
   std::vector<Obstacle> obstacles;
   const PlanCell whole{tile.tile, 0, {}};
@@ -371,7 +395,7 @@ Result<void> PartStages::buildTile(std::uint32_t t, Workshop& shop) {
   assignTopLevels(tile.tile, top, obstacles, m_tree, shop.noise);
   if (m_tree.kind == LevelKind::BlueNoise) tile.borders = borderSamples(whole, top.points, {});
   CellDone done;
-  emit(output, buildTopTree(tile.tile, cells, top), records, top.points.row, done);
+  emit(output, buildTopTree(tile.tile, cells, top), bytes.empty() ? nullptr : bytes.data() + kTopHeader, each, done);
   output.cells.emplace_back(t, std::move(done));
   return {};
 }

@@ -53,16 +53,19 @@ struct PointSchema {
 class PointSchema::Packing {
  public:
   Packing(const PointSchema& schema, const PointBatch& batch);
-  /// Writes the schema's columns of points first to first + count: one after the other, record i at out + i * stride.
-  void pack(std::size_t first, std::size_t count, std::byte* out, std::size_t stride) const;
+  /// Writes the schema's columns of points first to first + count, one after the other and zeros up to the record's end:
+  /// record i at out + i * stride, with `room` bytes.
+  void pack(std::size_t first, std::size_t count, std::byte* out, std::size_t stride, std::size_t room) const;
 
  private:
   struct Column {
-    const std::byte* data;  ///< null: the batch has none, its points count as zeros
+    const std::byte* data;
     std::size_t bytes;
-    bool widened;  ///< 8-bit colours
+    std::size_t at;  ///< in the record
+    bool widened;    ///< 8-bit colours
+    bool inWord() const { return bytes <= 8 && at / 8 == (at + bytes - 1) / 8; }
   };
-  std::vector<Column> m_columns;
+  std::vector<Column> m_columns;  ///< that the batch has
 };
 
 /// The colours to draw a batch's points first to first + count with: RGB, else intensity as gray, else a middle gray.

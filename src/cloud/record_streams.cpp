@@ -10,6 +10,7 @@
 #include <utility>
 
 #include <fcntl.h>
+#include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -19,43 +20,34 @@ namespace alidade {
 
 namespace {
 
-constexpr std::align_val_t kAlignment{4096};
-
-std::byte* allocateBlock(std::size_t bytes) {
-  return static_cast<std::byte*>(::operator new(bytes, kAlignment));
-}
-
-void freeBlock(std::byte* block) {
-  ::operator delete(block, kAlignment);
-}
+/// Of a large page; enough for direct file access, too.
+constexpr std::size_t kSlab = std::size_t{2} << 20;
+constexpr std::align_val_t kAlignment{kSlab};
 
 }  // namespace
 
-AlignedBlock::AlignedBlock(std::size_t bytes) : m_data(allocateBlock(bytes)) {}
-
-AlignedBlock::~AlignedBlock() {
-  if (m_data != nullptr) freeBlock(m_data);
+RecordStreams::Loaded::~Loaded() {
+  for (std::byte* block : m_blocks) m_streams->giveBlock(block);
 }
 
-AlignedBlock::AlignedBlock(AlignedBlock&& other) noexcept : m_data(std::exchange(other.m_data, nullptr)) {}
-
 RecordStreams::~RecordStreams() {
-  for (std::byte* block : m_free) freeBlock(block);
-  for (std::byte* block : m_held)
-    if (block != nullptr) freeBlock(block);
+  for (std::byte* slab : m_slabs) ::operator delete(slab, kAlignment);
   if (m_file >= 0) ::close(m_file);
 }
 
 std::byte* RecordStreams::takeBlock() {
-  {
-    std::lock_guard lock(m_mutex);
-    if (!m_free.empty()) {
-      std::byte* block = m_free.back();
-      m_free.pop_back();
-      return block;
-    }
+  std::lock_guard lock(m_mutex);
+  if (m_free.empty()) {
+    const std::size_t blocks = std::max<std::size_t>(1, kSlab / m_options.extentBytes), bytes = blocks * m_options.extentBytes;
+    m_slabs.reserve(m_slabs.size() + 1);
+    m_free.reserve(blocks);
+    m_slabs.push_back(static_cast<std::byte*>(::operator new(bytes, kAlignment)));
+    ::madvise(m_slabs.back(), bytes, MADV_HUGEPAGE);  // where there are none, small ones do
+    for (std::size_t i = blocks; i-- > 0;) m_free.push_back(m_slabs.back() + i * m_options.extentBytes);
   }
-  return allocateBlock(m_options.extentBytes);
+  std::byte* block = m_free.back();
+  m_free.pop_back();
+  return block;
 }
 
 void RecordStreams::giveBlock(std::byte* block) {
@@ -134,9 +126,6 @@ void RecordStreams::adopt(Writer& writer) {
   for (std::size_t s = 0; s < writer.m_closed.size(); ++s)
     m_extents[s].insert(m_extents[s].end(), writer.m_closed[s].begin(), writer.m_closed[s].end());
   writer.m_closed.clear();
-  std::lock_guard lock(m_mutex);
-  for (std::byte* block : m_free) freeBlock(block);
-  m_free.clear();
 }
 
 Result<void> RecordStreams::spillAll() {
@@ -148,7 +137,7 @@ Result<void> RecordStreams::spillAll() {
       const auto number = writeExtent(block);
       if (!number) return fail(number.error());
       extent = {*number, extent.used, true};
-      freeBlock(std::exchange(block, nullptr));
+      giveBlock(std::exchange(block, nullptr));
       m_inMemory -= m_options.extentBytes;
     }
   }
@@ -169,16 +158,16 @@ Result<void> RecordStreams::reopen(std::vector<std::vector<Extent>> extents) {
   return {};
 }
 
-Result<RecordStreams::Loaded> RecordStreams::load(std::uint32_t stream) const {
-  Loaded loaded;
+Result<RecordStreams::Loaded> RecordStreams::load(std::uint32_t stream) {
+  Loaded loaded(*this);
   if (stream >= m_extents.size()) return loaded;
   for (const Extent& extent : m_extents[stream]) {
     if (!extent.inFile) {
       loaded.parts.push_back({m_held[extent.at], extent.used});
       continue;
     }
-    loaded.blocks.emplace_back(m_options.extentBytes);
-    std::byte* block = loaded.blocks.back().data();
+    std::byte* block = takeBlock();
+    loaded.m_blocks.push_back(block);
     if (auto ok = readAt(m_file, extent.at * m_options.extentBytes, {block, m_options.extentBytes}, m_options.spillPath); !ok)
       return fail(ok.error());
     loaded.parts.push_back({block, extent.used});
@@ -190,7 +179,7 @@ void RecordStreams::release(std::uint32_t stream) {
   if (stream >= m_extents.size()) return;
   for (const Extent& extent : m_extents[stream]) {
     if (extent.inFile || m_held[extent.at] == nullptr) continue;
-    freeBlock(std::exchange(m_held[extent.at], nullptr));
+    giveBlock(std::exchange(m_held[extent.at], nullptr));
     m_inMemory -= m_options.extentBytes;
   }
 }

@@ -19,19 +19,6 @@ namespace alidade {
 /// The error of a temporary file that does not hold what was written: only a new start helps.
 inline constexpr const char* kDamagedSpill = "The temporary file of the point store is damaged";
 
-/// A block of memory aligned for direct file access.
-class AlignedBlock {
- public:
-  explicit AlignedBlock(std::size_t bytes);
-  ~AlignedBlock();
-  AlignedBlock(AlignedBlock&& other) noexcept;
-  AlignedBlock& operator=(AlignedBlock&&) = delete;
-  std::byte* data() const { return m_data; }
-
- private:
-  std::byte* m_data;
-};
-
 /// Points on their way from the source's order to their cells: runs of records of one cell and one batch, in
 /// blocks ("extents") of one stream, in memory or in one temporary file.
 ///
@@ -93,17 +80,25 @@ class RecordStreams {
   /// Goes on with an earlier process's file.
   Result<void> reopen(std::vector<std::vector<Extent>> extents);
 
-  /// A stream's extents as they are, one after the other at multiples of extentBytes.
-  struct Loaded {
-    std::vector<AlignedBlock> blocks;
+  /// A stream's extents as they are.
+  class Loaded {
+   public:
+    explicit Loaded(RecordStreams& streams) : m_streams(&streams) {}
+    Loaded(Loaded&& other) noexcept = default;
+    ~Loaded();
     struct Part {
       const std::byte* data;
       std::uint32_t used;
     };
     std::vector<Part> parts;
+
+   private:
+    friend class RecordStreams;
+    RecordStreams* m_streams;
+    std::vector<std::byte*> m_blocks;  ///< that were read from the file
   };
-  Result<Loaded> load(std::uint32_t stream) const;
-  /// Frees what the stream holds in memory.
+  Result<Loaded> load(std::uint32_t stream);
+  /// What the stream holds in memory may be written over.
   void release(std::uint32_t stream);
 
   std::uint64_t bytesInMemory() const { return m_inMemory.load(); }
@@ -117,6 +112,7 @@ class RecordStreams {
   Options m_options;
   std::vector<std::vector<Extent>> m_extents;
   std::mutex m_mutex;
+  std::vector<std::byte*> m_slabs;  ///< what blocks are cut from, in large pages: first touch of small ones is dear
   std::vector<std::byte*> m_free;
   std::vector<std::byte*> m_held;  ///< extents in memory by number
   std::atomic<std::uint64_t> m_inMemory{0};
