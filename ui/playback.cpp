@@ -18,6 +18,7 @@ Playback::Playback(Session& session, QObject* parent) : QObject(parent), m_sessi
   connect(&session, &Session::playedReady, this, [this](const std::shared_ptr<const RenderResult>& result) {
     if (result->request.run != m_run) return;
     m_schedule.drawn();
+    m_quality.drawn(result->decodeMs + result->renderMs, 1000 / (cameraRate(*m_session.project()) * m_speed));
     m_ready.push_back(result);
     showDue();
   });
@@ -52,6 +53,7 @@ void Playback::setPlaying(bool on) {
   if (!on) return stop();
   m_playing = true;
   m_droppedBefore = 0;
+  m_schedule = PlaySchedule();
   m_session.setPlaying(true);
   begin(m_session.frameIndex() >= count - 1 ? -1 : m_session.frameIndex());
   emit changed();
@@ -80,7 +82,7 @@ void Playback::askForMore() {
   while (m_playing) {
     const auto order = m_schedule.order(now());
     if (!order) return;
-    m_session.requestPlayed(order->frame, order->next, m_run);
+    m_session.requestPlayed(order->frame, order->next, m_run, m_quality.shrink());
   }
 }
 

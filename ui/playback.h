@@ -10,6 +10,7 @@
 #include <QObject>
 #include <QTimer>
 
+#include "app/play_quality.h"
 #include "app/play_schedule.h"
 #include "ui/session.h"
 
@@ -30,6 +31,8 @@ class Playback : public QObject {
   void setSpeed(double factor);
   int dropped() const { return m_droppedBefore + m_schedule.dropped(); }
   double shownPerSecond() const { return m_shownPerSecond; }
+  /// True where full size does not keep up: see app/play_quality.h.
+  bool atHalfSize() const { return m_quality.shrink() > 1; }
 
   /// Frames a second of the camera: the video's own, else the median step of the frame times, else 2.
   static double cameraRate(const Project& project);
@@ -46,6 +49,7 @@ class Playback : public QObject {
 
   Session& m_session;
   PlaySchedule m_schedule;
+  PlayQuality m_quality;
   QTimer m_due;
   QElapsedTimer m_clock;
   bool m_playing = false;

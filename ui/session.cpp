@@ -339,7 +339,7 @@ void Session::setPlaying(bool on) {
   requestRender();
 }
 
-void Session::requestPlayed(int index, const std::vector<int>& next, int run) {
+void Session::requestPlayed(int index, const std::vector<int>& next, int run, int shrink) {
   const auto& frames = m_project->frames;
   if (index < 0 || index >= static_cast<int>(frames.size())) return;
   RenderRequest request = requestOf(frames[static_cast<std::size_t>(index)]);
@@ -351,7 +351,8 @@ void Session::requestPlayed(int index, const std::vector<int>& next, int run) {
   // Even sizes, so that what hides the design may be judged on half of them.
   const CameraRecord* camera = m_project->findCamera(frames[static_cast<std::size_t>(index)].camera);
   if (request.width == 0 && camera) request.width = camera->camera.width(), request.height = camera->camera.height();
-  request.width &= ~1, request.height &= ~1;
+  request.width = request.width / shrink & ~1, request.height = request.height / shrink & ~1;
+  request.draft = shrink > 1;
   for (const int i : next)
     if (i >= 0 && i < static_cast<int>(frames.size())) request.next.push_back(frames[static_cast<std::size_t>(i)].id);
   request.serial = m_requestsSent;

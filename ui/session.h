@@ -95,7 +95,7 @@ class Session : public QObject {
   // Playing: frames are asked for ahead and shown when they are due, so that nothing waits on this thread.
   bool playing() const { return m_playing; }
   void setPlaying(bool on);  ///< off: the current frame is drawn as it is when still
-  void requestPlayed(int index, const std::vector<int>& next, int run);
+  void requestPlayed(int index, const std::vector<int>& next, int run, int shrink);
   void showPlayed(const std::shared_ptr<const RenderResult>& result);
   double renderMs() const { return m_renderMs; }
   void requestRender();

@@ -142,7 +142,10 @@ Timeline::Timeline(Session& session, Playback& playback, const Actions& actions,
   m_time->setMinimumWidth(70);
   m_strip = new FrameStrip(session);
   m_rate = new QLabel;
+  m_rate->setObjectName(QStringLiteral("playRate"));
   m_rate->setProperty("role", "dim");
+  m_rate->setToolTip(tr("While it plays, what hides the design is judged on half the picture's width and height, lines may be off by half a pixel, "
+                        "and where that does not keep up the picture is drawn at half size. Stopped, it is drawn in full"));
   m_rate->setMinimumWidth(150);
   m_rate->setAlignment(Qt::AlignRight | Qt::AlignVCenter);
   m_speed = new QComboBox;
@@ -187,8 +190,9 @@ void Timeline::refresh() {
   m_time->setText(frame ? formatSeconds(frame->timeSecs) : QString());
   m_list->setCurrentIndex(index);
   if (m_playback.playing() || m_playback.dropped() > 0) {
-    m_rate->setText(
-        tr("%1 fps shown, %2 dropped").arg(m_playback.shownPerSecond(), 0, 'f', 1).arg(m_playback.dropped()));
+    QString words = tr("%1 fps shown, %2 dropped").arg(m_playback.shownPerSecond(), 0, 'f', 1).arg(m_playback.dropped());
+    if (m_playback.playing() && m_playback.atHalfSize()) words = tr("half size, ") + words;
+    m_rate->setText(words);
   } else {
     m_rate->setText(count > 1 ? tr("%1 fps camera").arg(Playback::cameraRate(*m_session.project()), 0, 'f', 1)
                               : QString());
