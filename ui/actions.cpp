@@ -96,7 +96,7 @@ const std::vector<ActionSpec>& actionTable() {
        "Writes a text in a box that points at something", true},
       {C::Resection, "resection", "Refine pose from points…", "align", "Ctrl+R",
        "Opens the panel where picked points refine this frame's pose", true},
-      {C::AutoAlign, "autoAlign", "Align with the scan automatically", "align", "Ctrl+Shift+R",
+      {C::AutoAlign, "autoAlign", "Align with scan or design automatically", "align", "Ctrl+Shift+R",
        "Finds this frame's pose from the scan and the picture alone"},
       {C::RefinePose, "refinePose", "Refine", "align", "Ctrl+Return",
        "Solves for the pose that fits the picked points"},

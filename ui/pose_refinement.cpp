@@ -205,15 +205,17 @@ void PoseRefinement::alignAutomatically() {
     std::shared_ptr<const Project> project;
   };
   const auto project = m_session.project();
-  const QString name = tr("Align %1 with the scan").arg(text(m_session.currentFrame()->name));
+  const AlignTo target = alignmentTarget(*project);
+  const QString name = (target == AlignTo::Scans ? tr("Align %1 with the scan") : tr("Align %1 with the design"))
+                           .arg(text(m_session.currentFrame()->name));
   m_running = true;
   emit changed();
   m_session.jobs().run(
       name,
-      [project, data = m_session.data(), frame = m_session.frame()](const Progress& progress) -> Result<Outcome> {
+      [project, target, data = m_session.data(), frame = m_session.frame()](const Progress& progress) -> Result<Outcome> {
         Project copy = *project;
         PictureCache pictures(1);
-        auto summary = autoAlignFrame(copy, alignmentScene(copy, *data), pictures, frame, {}, false, progress);
+        auto summary = autoAlignFrame(copy, alignmentScene(copy, *data, target), pictures, frame, {}, false, progress);
         if (!summary) return fail(summary.error());
         return Outcome{std::move(*summary), std::make_shared<const Project>(std::move(copy))};
       },

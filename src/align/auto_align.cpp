@@ -8,6 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "align/edge_fit.h"
+#include "align/edges.h"
 #include "align/evidence.h"
 #include "align/fine_fit.h"
 #include "align/level_fit.h"
@@ -28,6 +30,8 @@ constexpr double kParallaxPx = 9;
 constexpr int kFineRounds = 5;
 constexpr int kHalf = 10;
 constexpr double kStillPx = 0.05;
+constexpr std::size_t kCandidates = 6;
+constexpr std::size_t kEdgeChoiceLevel = 2;
 
 double meanOf(const Image<float>& luma) {
   double sum = 0;
@@ -58,6 +62,11 @@ RigidTransform shifted(const RigidTransform& pose, const glm::dvec3& inCamera) {
   return to;
 }
 
+struct Tried {
+  RigidTransform pose;
+  double score = 0;
+};
+
 class Aligner {
  public:
   Aligner(const AlignmentScene& scene, const ColourImage& photo, const Camera& camera, const RigidTransform& start,
@@ -77,12 +86,14 @@ class Aligner {
       summary.reason = "no place of the scene could be found in the picture";
       return summary;
     }
-    const std::optional<RigidTransform> coarse = chooseCandidate(candidates, summary.evidence.rivalScore);
-    if (!coarse) {
+    const std::vector<Tried> tried = tryCandidates(candidates);
+    if (tried.empty()) {
       summary.reason = "no pose within the range brings the scene and the picture together";
       return summary;
     }
-    RigidTransform pose = *coarse;
+    if (!m_scene.hasColour()) return fitByEdges(tried, std::move(summary));
+    RigidTransform pose = tried.front().pose;
+    if (tried.size() > 1) summary.evidence.rivalScore = tried[1].score / std::max(1e-9, tried.front().score);
     for (std::size_t level = 1; level < m_levels.size(); ++level) {
       m_progress.report(0.3 + 0.4 * static_cast<double>(level) / static_cast<double>(m_levels.size()), "Fitting the picture");
       if (m_progress.cancelled()) return fail(cancelledError());
@@ -110,14 +121,16 @@ class Aligner {
       return fail(fmt::format("The picture has {}×{} pixels, its calibration is for {}×{}", m_photo.width(), m_photo.height(),
                               m_camera.width(), m_camera.height()),
                   {}, "Use the calibration of this picture size");
-    if (m_scene.empty()) return fail("There is no scan to align the picture with", {}, "Add a scan of what the picture shows");
+    if (m_scene.empty()) return fail("There is no scan and no design to align the picture with", {}, "Add a scan of what the picture shows, and make it visible");
     m_levels = picturePyramid(m_photo, m_camera, kWidestPx, kCoarsestPx);
     const double mean = meanOf(m_levels.front().luma), deviation = deviationOf(m_levels.front().luma, mean);
     if (mean < kDarkest) return fail(fmt::format("The picture is too dark to align: mean brightness {:.0f} of 255", mean), {}, "Take a brighter picture, or pick points by hand");
     if (deviation < kLeastContrast) return fail("The picture shows no edges: its brightness hardly varies", {}, "Take a picture of something with structure, or pick points by hand");
+    if (!m_scene.hasColour())
+      for (PictureLevel& level : m_levels) level.luma = photoEdges(level.luma);
     m_firstView = drawScanView(m_scene, m_levels.front().camera, m_start);
     const auto near = depthAt(m_firstView, 0.1), middle = depthAt(m_firstView, 0.5);
-    if (!near) return fail("No scan is in view of this pose", {}, "Check the pose and the scan's coordinate system, or give a better start");
+    if (!near) return fail("Nothing of the scene is in view of this pose", {}, "Check the pose and the scan's coordinate system, or give a better start");
     m_nearM = *near;
     const double focal = m_camera.intrinsics().fx;
     const double spacingPx = m_scene.spacingM() * focal / *middle;
@@ -148,6 +161,33 @@ class Aligner {
     options.half = half, options.blurPx = blurPx;
     options.radiusPx = round == 0 ? 4 : 3;
     return options;
+  }
+
+  /// From size to size by edges; at the smaller sizes all candidates, of which the best goes on.
+  Result<AlignmentSummary> fitByEdges(std::vector<Tried> tried, AlignmentSummary summary) const {
+    const PoseKnowledge known = knowledgeOf(m_start, m_options);
+    const std::size_t choose = std::min(kEdgeChoiceLevel, m_levels.size() - 1);
+    FineFit fit;
+    for (std::size_t level = 1; level < m_levels.size(); ++level) {
+      m_progress.report(0.3 + 0.6 * static_cast<double>(level) / static_cast<double>(m_levels.size()), "Fitting the edges");
+      std::vector<glm::dvec3> world;
+      for (Tried& candidate : tried) {
+        if (m_progress.cancelled()) return fail(cancelledError());
+        fit = fitEdges(m_scene, m_levels[level], candidate.pose, known);
+        candidate.score = fit.estimate ? fit.score : 0;
+        if (fit.estimate) candidate.pose = fit.estimate->cameraFromWorld;
+        if (world.empty())
+          for (const Anchor& anchor : fit.anchors) world.push_back(anchor.world);
+      }
+      if (level != choose) continue;
+      keepApart(tried, world, m_levels[level].camera);
+      if (tried.size() > 1) summary.evidence.rivalScore = tried[1].score / std::max(1e-9, tried.front().score);
+      tried.resize(1);
+    }
+    m_progress.report(0.92, "Checking the pose");
+    judge(fit, m_levels.back(), m_options, summary);
+    m_progress.report(1, "Aligned");
+    return summary;
   }
 
   /// Rounds at the finest level until the pose stands still.
@@ -191,15 +231,21 @@ class Aligner {
     return all;
   }
 
-  /// Fits the candidates at the coarsest level, drawn from where they stand; the one whose fit agrees best.
-  std::optional<RigidTransform> chooseCandidate(std::vector<PoseCandidate>& candidates, double& rival) {
-    if (m_options.startIsNear) return m_start;
+  /// Best first, none nearer to a better one than kApartPx.
+  static void keepApart(std::vector<Tried>& tried, const std::vector<glm::dvec3>& world, const Camera& camera) {
+    std::stable_sort(tried.begin(), tried.end(), [](const Tried& a, const Tried& b) { return a.score > b.score; });
+    std::vector<Tried> kept;
+    for (const Tried& one : tried)
+      if (std::all_of(kept.begin(), kept.end(), [&](const Tried& better) { return distancePx(world, camera, one.pose, better.pose) > kApartPx; }))
+        kept.push_back(one);
+    tried = std::move(kept);
+  }
+
+  /// Fits the candidates at the coarsest level, drawn from where they stand; by how well the fits agree, best first.
+  std::vector<Tried> tryCandidates(std::vector<PoseCandidate>& candidates) const {
+    if (m_options.startIsNear) return {{m_start, 1}};
     std::sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) { return a.score > b.score; });
-    if (candidates.size() > 6) candidates.resize(6);
-    struct Tried {
-      RigidTransform pose;
-      double score;
-    };
+    if (candidates.size() > kCandidates) candidates.resize(kCandidates);
     std::vector<Tried> tried;
     std::vector<glm::dvec3> world;
     for (const PoseCandidate& candidate : candidates) {
@@ -218,12 +264,8 @@ class Aligner {
         for (const Anchor& anchor : fit.anchors) world.push_back(anchor.world);
       tried.push_back({pose, fit.score()});
     }
-    if (tried.empty()) return std::nullopt;
-    const auto best = std::max_element(tried.begin(), tried.end(), [](const Tried& a, const Tried& b) { return a.score < b.score; });
-    for (const Tried& other : tried)
-      if (distancePx(world, m_levels.front().camera, other.pose, best->pose) > kApartPx)
-        rival = std::max(rival, other.score / std::max(1e-9, best->score));
-    return best->pose;
+    keepApart(tried, world, m_levels.front().camera);
+    return tried;
   }
 
   const AlignmentScene& m_scene;

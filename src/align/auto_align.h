@@ -37,6 +37,7 @@ struct AlignmentEvidence {
   double information = 0;      ///< normalised information distance to the picture, 0 the same, 1 unrelated
   double informationAside = 0; ///< the same with the picture moved a little: the least over eight directions
   double rivalScore = 0;       ///< of the best other pose in the search, against the best: 1 as good
+  double asideScore = 0;       ///< of edges: of the best pose a few pixels aside, against the found one
 };
 
 struct AlignmentSummary {
@@ -59,6 +60,9 @@ struct AlignmentSummary {
 /// whole range by searchPoses(), from several centres where the range moves near things far across the picture; then
 /// from size to size by resection of what was found, drawn anew at each pose, up to where the scan's points lie a
 /// pixel apart. The result counts as converged only where all of AlignmentEvidence speaks for it.
+///
+/// A scene without colours and intensities is fitted by its edges instead, steps and folds of its surfaces against those
+/// of the photo: coarsely as above, at last by fitEdges().
 ///
 /// Error for what cannot be tried: a picture of another size than the calibration, too dark or without contrast, no
 /// scene in view. Cancels between steps.

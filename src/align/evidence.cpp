@@ -24,6 +24,7 @@ constexpr double kLeastAgreeing = 0.5;    // of what was found
 constexpr double kLeastFound = 0.15;      // of the patches: the scene may have changed
 constexpr double kLeastSpread = 0.5;
 constexpr double kMostRival = 0.9;
+constexpr double kMostAside = 0.79;  // of right poses up to 0.78, of wrong ones from 0.80
 
 double entropy(const double* counts, int size, double total) {
   double sum = 0;
@@ -121,6 +122,7 @@ void judge(const FineFit& fit, const PictureLevel& level, const AlignmentOptions
     return;
   }
   summary.estimate = *fit.estimate;
+  e.asideScore = fit.asideScore;
   const RigidTransform& pose = fit.estimate->cameraFromWorld;
   e.inliers = fit.estimate->counting();
   std::vector<double> correlations;
@@ -131,8 +133,9 @@ void judge(const FineFit& fit, const PictureLevel& level, const AlignmentOptions
     e.correlation = correlations[correlations.size() / 2];
   }
   e.spread = spreadOf(fit, level.luma);
-  // By what parts of the scan disagree among themselves, all of it may be off.
-  e.expectedPx = counted * k95 * std::hypot(fit.estimate->changePx, fit.estimate->rmsPx);
+  // By what parts of the scan disagree among themselves, all of it may be off; half of what edges do is how they are found.
+  const double disagreePx = (fit.view.ofEdges ? 0.5 : 1) * fit.estimate->rmsPx;
+  e.expectedPx = counted * k95 * std::hypot(fit.estimate->changePx, disagreePx);
   e.halvesPx = counted * halvesDistance(fit, level, summary.startCameraFromWorld, options);
   e.information = informationDistance(fit.view, fit.photo, {0, 0});
   e.informationAside = 1;
@@ -155,6 +158,7 @@ void judge(const FineFit& fit, const PictureLevel& level, const AlignmentOptions
        fmt::format("two halves of what was found give poses {:.1f} px apart", e.halvesPx)},
       {margin(e.informationAside - e.information, 0, 0.01), "the picture fits the scene no better than moved by a few pixels"},
       {margin(-e.rivalScore, -kMostRival, -0.6), "another pose fits nearly as well"},
+      {margin(-e.asideScore, -kMostAside, -0.6), "the edges fit nearly as well a few pixels aside"},
       {margin(-glm::length(moved), -1.5 * options.range.positionM, -1.2 * options.range.positionM),
        fmt::format("it ended {:.2f} m from the start, beyond the range", glm::length(moved))},
       {margin(-turned, -1.5 * options.range.rotationRad, -1.2 * options.range.rotationRad), "it ended beyond the range of attitudes"}};

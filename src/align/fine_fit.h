@@ -25,6 +25,8 @@ struct FineFit {
   std::vector<double> correlation;  ///< of each place
   std::optional<PoseEstimate> estimate;
   double movedPx = 0;           ///< mean over the anchors
+  double score = 0;             ///< of edges: mean strength of the photo's edges at those drawn, above chance
+  double asideScore = 0;        ///< of the best pose a few pixels aside, against this one's
 };
 
 struct FineFitOptions {

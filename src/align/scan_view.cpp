@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "align/edges.h"
 #include "base/parallel.h"
 #include "cloud/selection.h"
 #include "raster/occlusion.h"
@@ -158,6 +159,18 @@ void fillHoles(Image<Sum>& sums, int levels) {
   push(coarse, sums);
 }
 
+double shareOf(const Image<std::uint8_t>& covered) {
+  const auto count = std::count(covered.data(), covered.data() + covered.size(), std::uint8_t{1});
+  return covered.size() == 0 ? 0 : static_cast<double>(count) / static_cast<double>(covered.size());
+}
+
+ScanView edgeView(ScanView view, bool complete) {
+  view.ofEdges = true;
+  view.luma = depthEdges(view.depth, complete, view.covered);
+  view.coverage = shareOf(view.covered);
+  return view;
+}
+
 }  // namespace
 
 bool AlignmentScene::hasColour() const {
@@ -186,19 +199,18 @@ ScanView drawScanView(const AlignmentScene& scene, const Camera& camera, const R
     for (std::size_t i = 0; i < behind.size(); ++i)
       if (std::isnan(view.depth.data()[i])) view.depth.data()[i] = behind.data()[i];
   }
+  if (!scene.hasColour()) return edgeView(std::move(view), scene.complete);
   Image<Sum> sums = spreadAll(layers, camera, cameraFromWorld, view.depth);
   fillHoles(sums, kFillLevels);
   view.luma = Image<float>(camera.width(), camera.height());
   view.covered = Image<std::uint8_t>(camera.width(), camera.height());
-  std::size_t covered = 0;
   for (std::size_t i = 0; i < sums.size(); ++i) {
     const Sum& sum = sums.data()[i];
     if (!(sum.weight > 0.25f) || !(view.depth.data()[i] > 0)) continue;
     view.luma.data()[i] = sum.light / sum.weight;
     view.covered.data()[i] = 1;
-    ++covered;
   }
-  view.coverage = sums.size() == 0 ? 0 : static_cast<double>(covered) / static_cast<double>(sums.size());
+  view.coverage = shareOf(view.covered);
   return view;
 }
 

@@ -3,9 +3,34 @@
 
 #include "app/auto_align.h"
 
+#include <algorithm>
+#include <set>
+
 namespace alidade {
 
-AlignmentScene alignmentScene(const Project& project, const LoadedData& data) {
+namespace {
+
+AlignmentScene designedScene(const Project& project, const LoadedData& data) {
+  AlignmentScene scene;
+  scene.complete = true;
+  for (const Design& design : project.designs) {
+    const auto model = data.designs.find(design.id);
+    if (!design.visible || model == data.designs.end()) continue;
+    const std::set<std::string> hidden(design.hiddenElements.begin(), design.hiddenElements.end());
+    scene.surfaces.push_back(std::make_shared<const OccluderMesh>(occluderMeshOf(*model->second, hidden)));
+  }
+  return scene;
+}
+
+}  // namespace
+
+AlignTo alignmentTarget(const Project& project) {
+  const bool hasScan = std::any_of(project.scans.begin(), project.scans.end(), [](const Scan& scan) { return scan.visible; });
+  return hasScan ? AlignTo::Scans : AlignTo::Designs;
+}
+
+AlignmentScene alignmentScene(const Project& project, const LoadedData& data, AlignTo to) {
+  if (to == AlignTo::Designs) return designedScene(project, data);
   AlignmentScene scene;
   for (const Scan& scan : project.scans) {
     const auto layers = data.scans.find(scan.id);

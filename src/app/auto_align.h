@@ -11,10 +11,16 @@
 
 namespace alidade {
 
-/// The visible scans of a project as a scene to align pictures with.
-AlignmentScene alignmentScene(const Project& project, const LoadedData& data);
+/// What pictures are aligned with: the surfaces that were scanned, or those that are designed.
+enum class AlignTo { Scans, Designs };
 
-/// Aligns a frame with the scans from the pose that it has. The project gets the new pose, with its quality, where it
+/// Scans where one is visible, else designs.
+AlignTo alignmentTarget(const Project& project);
+
+/// The visible scans, or the visible elements of the visible designs, of a project as a scene to align pictures with.
+AlignmentScene alignmentScene(const Project& project, const LoadedData& data, AlignTo to);
+
+/// Aligns a frame with the scene from the pose that it has. The project gets the new pose, with its quality, where it
 /// converged and not `dryRun`; else it is unchanged. Error, with what to do, for a frame without pose, camera or
 /// picture and for what alignPicture() refuses.
 Result<AlignmentSummary> autoAlignFrame(Project& project, const AlignmentScene& scene, PictureCache& pictures, FrameId frame,

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -23,6 +25,7 @@ struct Arguments {
   std::vector<std::string> at;
   bool dryRun = false, automatic = false, sequence = false;
   double withinPx = 1;
+  std::optional<AlignTo> to;
   int keyframes = 1;
 };
 
@@ -206,6 +209,7 @@ Result<Answer> runPictures(const Arguments& arguments, const ResectionOptions& l
   RefinePictures wanted{arguments.project, arguments.frame, {}, arguments.keyframes, arguments.dryRun};
   wanted.options.lockPosition = locks.lockPosition, wanted.options.lockAttitude = locks.lockAttitude;
   wanted.options.acceptedPx = arguments.withinPx;
+  wanted.to = arguments.to;
   return arguments.sequence ? refineTogether(wanted, progress) : refineAutomatically(wanted, progress);
 }
 
@@ -260,7 +264,7 @@ void addRefine(Verbs& verbs) {
   command->add_option("--at", arguments->at, "E,N,H where the expected error is wanted")
       ->check(checkedBy(parsePoint, "POINT"));
   command->add_flag("--auto", arguments->automatic,
-                    "Align --frame, or every frame with a pose, with the scans: from up to 3 degrees and 0.3 m off")
+                    "Align --frame, or every frame with a pose, with the scans or the designs: from up to 3 degrees and 0.3 m off")
       ->excludes(command->get_option("--observations"));
   command->add_flag("--sequence", arguments->sequence,
                     "Align all frames with the scans and adjust them together: tie points, smooth motion, alarm where a fixed camera moved")
@@ -269,6 +273,9 @@ void addRefine(Verbs& verbs) {
       ->check(CLI::Range(1, 10000));
   command->add_option("--within", arguments->withinPx, "With --auto and --sequence: the 95 % error, pixels of 1920 across, up to which a pose is believed")
       ->check(CLI::Range(0.05, 50.0));
+  command->add_option("--to", arguments->to, "With --auto: what to align with; scan, where one is visible, else design")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, AlignTo>{{"scan", AlignTo::Scans}, {"design", AlignTo::Designs}}))
+      ->needs("--auto");
   command->add_flag("--dry-run", arguments->dryRun, "Report only; leave the project as it is");
 }
 

@@ -27,7 +27,7 @@ Json jsonOf(const std::string& frame, const AlignmentSummary& summary) {
   json["evidence"] = {{"places_sought", e.patches}, {"places_found", e.matched}, {"places_agreeing", e.inliers},
                       {"correlation", e.correlation}, {"spread", e.spread}, {"expected_error_px", e.expectedPx},
                       {"halves_px", e.halvesPx}, {"information_distance", e.information},
-                      {"information_distance_aside", e.informationAside}, {"rival_score", e.rivalScore}};
+                      {"information_distance_aside", e.informationAside}, {"rival_score", e.rivalScore}, {"aside_score", e.asideScore}};
   if (!summary.converged) return json;
   const glm::dquat& q = summary.cameraFromWorld.rotation;
   json["camera_centre_m"] = vec(summary.cameraFromWorld.centre());
@@ -56,7 +56,7 @@ Result<Answer> refineAutomatically(const RefinePictures& wanted, const Progress&
   if (frames.empty()) return fail("The project has no frame to align", wanted.project, "Add pictures and approximate poses");
   auto loaded = loadData(*project, progress.part(0, 0.1));
   if (!loaded) return fail(loaded.error());
-  const AlignmentScene scene = alignmentScene(*project, loaded->data);
+  const AlignmentScene scene = alignmentScene(*project, loaded->data, wanted.to.value_or(alignmentTarget(*project)));
   PictureCache pictures;
   Answer answer;
   Json list = Json::array();
@@ -97,7 +97,7 @@ Result<Answer> refineTogether(const RefinePictures& wanted, const Progress& prog
   PictureCache pictures;
   SequenceOptions options;
   options.alignment = wanted.options, options.everyNth = wanted.keyframes;
-  const auto summary = refineSequence(*project, alignmentScene(*project, loaded->data), pictures, options, wanted.dryRun, progress.part(0.1, 1));
+  const auto summary = refineSequence(*project, alignmentScene(*project, loaded->data, AlignTo::Scans), pictures, options, wanted.dryRun, progress.part(0.1, 1));
   if (!summary) return fail(summary.error());
   const bool save = summary->converged && !wanted.dryRun;
   if (save)

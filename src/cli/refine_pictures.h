@@ -3,9 +3,10 @@
 
 #pragma once
 
+#include <optional>
 #include <string>
 
-#include "align/auto_align.h"
+#include "app/auto_align.h"
 #include "cli/command.h"
 
 namespace alidade::cli {
@@ -15,9 +16,10 @@ struct RefinePictures {
   AlignmentOptions options;
   int keyframes = 1;  ///< of a sequence: every so many frames
   bool dryRun = false;
+  std::optional<AlignTo> to = {};  ///< none: alignmentTarget()
 };
 
-/// `refine --auto`: each frame by itself against the scans.
+/// `refine --auto`: each frame by itself against the scans or the designs.
 Result<Answer> refineAutomatically(const RefinePictures& wanted, const Progress& progress);
 
 /// `refine --sequence`: all frames together, with tie points and smoothness.

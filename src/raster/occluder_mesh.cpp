@@ -19,6 +19,7 @@ constexpr int kTile = 64;           ///< cells along a block
 constexpr int kLargestMerge = 16;   ///< cells along a quad
 /// A plane explains a patch where its returns lie about it as noise does.
 constexpr float kRmsSigmas = 1.5f, kMostSigmas = 5.0f;
+constexpr std::size_t kTrianglesABlock = 256;  ///< of a design
 constexpr float kFlatCell = 2.0f;  ///< sigmas out of plane below which one cell is one quad
 
 using Corners = std::array<glm::vec3, 4>;
@@ -210,6 +211,25 @@ void addStation(const ScannerGrid& grid, std::uint32_t station, OccluderMesh& me
 }
 
 }  // namespace
+
+OccluderMesh occluderMeshOf(const DesignModel& design, const std::set<std::string>& hidden) {
+  OccluderMesh mesh;
+  mesh.origins.push_back(design.origin);
+  for (const DesignElement& element : design.elements) {
+    if (hidden.contains(element.globalId)) continue;
+    Patch patch;
+    for (std::uint32_t i = 0; i + 2 < element.indexCount; i += 3) {
+      const std::uint32_t* corner = design.triangles.data() + element.firstIndex + i;
+      const glm::vec3 &a = design.vertices[corner[0]], &b = design.vertices[corner[1]], &c = design.vertices[corner[2]];
+      patch.quads.push_back({a, b, c, c});
+      if (patch.quads.size() < kTrianglesABlock) continue;
+      append(patch, 0, mesh);
+      patch = {};
+    }
+    append(patch, 0, mesh);
+  }
+  return mesh;
+}
 
 struct OccluderMeshBuilder::Impl {
   std::vector<Station> stations;

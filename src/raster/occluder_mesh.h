@@ -5,10 +5,13 @@
 
 #include <cstdint>
 #include <memory>
+#include <set>
+#include <string>
 #include <vector>
 
 #include <glm/glm.hpp>
 
+#include "survey/design_model.h"
 #include "survey/point_batch.h"
 
 namespace alidade {
@@ -44,6 +47,10 @@ struct OccluderMesh {
   /// Returns without a usable place in a grid: they belong with the unstructured points.
   std::uint64_t withoutGrid = 0;
 };
+
+/// The surface of a design's elements, those left out whose globalId is in `hidden`: one block some hundred triangles of an
+/// element. Corners in float metres from the design's origin, as the model has them.
+OccluderMesh occluderMeshOf(const DesignModel& design, const std::set<std::string>& hidden = {});
 
 /// Collects returns with `row`, `column` and `scanner`, then builds. One builder a mesh; not thread-safe.
 /// Memory: 20 bytes a return while collecting, 20 more a cell of the largest grid while building. A grid

@@ -34,8 +34,9 @@ double percentile(std::vector<double> values, double share) {
   return values[std::min(values.size() - 1, static_cast<std::size_t>(share * static_cast<double>(values.size())))];
 }
 
-StartStatistics run(const Project& project, const LoadedData& data, const char* name, int frameStep, double believedPx) {
-  const AlignmentScene scene = alignmentScene(project, data);
+StartStatistics run(const Project& project, const LoadedData& data, const char* name, int frameStep, double believedPx,
+                    AlignTo to = AlignTo::Scans) {
+  const AlignmentScene scene = alignmentScene(project, data, to);
   PictureCache pictures;
   std::mt19937 random(7);
   StartStatistics s;
@@ -63,10 +64,10 @@ StartStatistics run(const Project& project, const LoadedData& data, const char* 
     const auto after = test::poseError(depth, small, scale, truth, *frame.cameraFromWorld);
     if (std::getenv("ALIDADE_ALIGN_VERBOSE")) {
       const AlignmentEvidence& e = summary->evidence;
-      std::printf("  %3d %-14s start %6.1f px: %s %5.2f px %5.1f mm conf %.2f  %d/%d/%d corr %.2f spread %.2f exp %.2f halves %.2f nid %.3f/%.3f rival %.2f scale %.1f cpu %.2f  %s\n",
+      std::printf("  %3d %-14s start %6.1f px: %s %5.2f px %5.1f mm conf %.2f  %d/%d/%d corr %.2f spread %.2f exp %.2f halves %.2f nid %.3f/%.3f rival %.2f aside %.2f scale %.1f cpu %.2f  %s\n",
                   i, frame.name.c_str(), before.medianPx, summary->converged ? "conv" : "  no", after.medianPx, after.mmAt10m, summary->confidence,
                   e.inliers, e.matched, e.patches, e.correlation, e.spread, e.expectedPx, e.halvesPx, e.information, e.informationAside,
-                  e.rivalScore, summary->levelScale, s.cpuSecs.back(), summary->reason.c_str());
+                  e.rivalScore, e.asideScore, summary->levelScale, s.cpuSecs.back(), summary->reason.c_str());
     }
     if (!summary->converged) continue;
     ++s.converged;
@@ -98,6 +99,9 @@ TEST(AutoAlignStatistics, DemoSite) {
   const StartStatistics s = run(*project, loaded->data, "demo", 5, 2);
   EXPECT_GE(s.within, 95 * s.starts / 100);
   EXPECT_EQ(s.wrong, 0);
+  const StartStatistics design = run(*project, loaded->data, "demo, design alone", 5, 2, AlignTo::Designs);
+  EXPECT_GE(design.within, 90 * design.starts / 100);
+  EXPECT_EQ(design.wrong, 0);
   if (!given) {
     std::error_code ignored;
     fs::remove_all(folder, ignored);

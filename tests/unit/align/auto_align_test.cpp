@@ -81,7 +81,7 @@ TEST_F(AutoAlign, SaysWhyAPictureCannotBeTried) {
   const RigidTransform away = RigidTransform::cameraLookingAt(Room::world({0, -3, 2}), Room::world({0, -20, 2}));
   const auto nothing = alignPicture(*s_scene, *s_photo, Room::camera(), away);
   ASSERT_FALSE(nothing);
-  EXPECT_NE(nothing.error().what.find("No scan is in view"), std::string::npos);
+  EXPECT_NE(nothing.error().what.find("Nothing of the scene is in view"), std::string::npos);
   const auto none = alignPicture({}, *s_photo, Room::camera(), Room::pose());
   ASSERT_FALSE(none);
   EXPECT_FALSE(none.error().advice.empty());

@@ -46,7 +46,7 @@ TEST(SequenceStatistics, TenMinutesOfVideoWithDrift) {
   ASSERT_TRUE(project) << project.error().text();
   const auto loaded = loadData(*project, Progress());
   ASSERT_TRUE(loaded && loaded->problems.empty());
-  const AlignmentScene scene = alignmentScene(*project, loaded->data);
+  const AlignmentScene scene = alignmentScene(*project, loaded->data, AlignTo::Scans);
 
   const SiteModel site = makeSite(options.seed, options.siteOrigin);
   const auto built = RayScene::make(site.asBuilt), design = RayScene::make(site.design);
