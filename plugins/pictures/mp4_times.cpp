@@ -89,7 +89,7 @@ std::optional<std::int64_t> shownFrom(Bytes track, std::int64_t mediaEnd, double
     const std::uint64_t stored = number(table->entries, at + static_cast<std::size_t>(width), width);
     const std::int64_t mediaTime = width == 8 ? static_cast<std::int64_t>(stored) : static_cast<std::int32_t>(stored);
     if (mediaTime < 0) continue;  // an empty edit delays all frames alike
-    if (start) return std::nullopt;
+    if (start || mediaTime > mediaEnd) return std::nullopt;
     start = mediaTime;
     const double duration = static_cast<double>(number(table->entries, at, width)) * mediaPerMovie;
     // A frame's duration of slack: writers round.
