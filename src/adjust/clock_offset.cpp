@@ -4,8 +4,10 @@
 #include "adjust/clock_offset.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <optional>
 
 #include <fmt/format.h>
@@ -26,10 +28,19 @@ constexpr double kApartSecs = 0.04;
 /// What the best must be better by, in standard errors of the difference between pairs.
 constexpr double kSurelyBetter = 3.0;
 
+constexpr int kColumns = 4, kRows = 3, kRegions = kColumns * kRows;
+
+int regionOf(const glm::dvec2& pixel, const Camera& camera) {
+  const int column = std::clamp(static_cast<int>(kColumns * (pixel.x + 0.5) / camera.width()), 0, kColumns - 1);
+  const int row = std::clamp(static_cast<int>(kRows * (pixel.y + 0.5) / camera.height()), 0, kRows - 1);
+  return row * kColumns + column;
+}
+
 /// A track with its rays on the undistorted image plane.
 struct Ray {
   glm::dvec2 first, second;
   double firstLater = 0, secondLater = 0;  // row times, seconds after the middle row
+  int region = 0;                          // of the picture, where it was first seen
 };
 
 struct Pair {
@@ -74,7 +85,7 @@ class OffsetProblem {
         const auto a = camera.unproject(first), b = camera.unproject(second);
         if (!a || !b) continue;
         made.rays.push_back({glm::dvec2(*a), glm::dvec2(*b), rows.secsAtRow(first.y, camera.height()),
-                             rows.secsAtRow(second.y, camera.height())});
+                             rows.secsAtRow(second.y, camera.height()), regionOf(first, camera)});
       }
       if (made.rays.size() >= kFewestTracks) m_pairs.push_back(std::move(made));
     }
@@ -164,6 +175,49 @@ Search searchOver(const OffsetProblem& problem, const ClockOffsetOptions& option
   return search;
 }
 
+/// A pair's shares of the gradient by region of the picture, and when it was seen.
+struct Score {
+  double middleSecs, lengthSecs;
+  std::array<double, kRegions> ofRegion{};
+  double gradient() const { return std::accumulate(ofRegion.begin(), ofRegion.end(), 0.0); }
+};
+
+/// Of the scores' sum where those of pairs near each other in time are alike (Newey and West 1987): pairs that overlap share
+/// pictures and movement. The weights fall to none at `kMemory` lengths of a pair.
+double varianceByTime(const std::vector<Score>& scores) {
+  constexpr double kMemory = 3;
+  double longest = 0;
+  for (const Score& s : scores) longest = std::max(longest, s.lengthSecs);
+  double sum = 0, weights = 0, alone = 0;
+  for (const Score& a : scores) {
+    alone += a.gradient() * a.gradient();
+    for (const Score& b : scores) {
+      const double weight = std::max(0.0, 1 - std::abs(a.middleSecs - b.middleSecs) / std::max(kMemory * longest, 1e-9));
+      weights += weight;
+      sum += weight * a.gradient() * b.gradient();
+    }
+  }
+  // As the scores add up to nothing at the minimum, what is left of few is too small by a known part. Few tell little of how
+  // alike they are, and that they were opposite is not believed.
+  const double left = 1 - weights / (static_cast<double>(scores.size()) * static_cast<double>(scores.size()));
+  return left > 0.1 ? std::max(sum / left, alone) : std::numeric_limits<double>::infinity();
+}
+
+/// Of the scores' sum where those of a region of the picture are alike as long as it is seen: an edge that tracks slide along.
+double varianceByRegion(const std::vector<Score>& scores) {
+  double sum = 0, both = 0;
+  for (int r = 0; r < kRegions; ++r) {
+    double ofRegion = 0;
+    for (const Score& s : scores) {
+      const double one = s.ofRegion[static_cast<std::size_t>(r)];
+      ofRegion += one;
+      both += one * one;
+    }
+    sum += ofRegion * ofRegion;
+  }
+  return std::max(0.0, static_cast<double>(kRegions) / (kRegions - 1) * sum - both);
+}
+
 /// One step of Gauss-Newton with what is needed to judge it.
 struct Step {
   double change = 0, variance = 0, information = 0;
@@ -174,30 +228,30 @@ struct Step {
 
 Step stepAt(const OffsetProblem& problem, double offset) {
   Step step;
-  double gradient = 0, scatter = 0;
+  double gradient = 0;
+  std::vector<Score> scores;
   std::vector<glm::dvec2> here, before, after;
   for (const Pair& pair : problem.pairs()) {
     if (!problem.misses(pair, offset, true, here) || !problem.misses(pair, offset - kDifferenceSecs, true, before) ||
         !problem.misses(pair, offset + kDifferenceSecs, true, after))
       continue;
-    double ofPair = 0;
+    Score score{0.5 * (pair.firstSecs + pair.secondSecs), std::abs(pair.secondSecs - pair.firstSecs)};
     for (std::size_t i = 0; i < here.size(); ++i) {
       const glm::dvec2 slope = (after[i] - before[i]) / (2 * kDifferenceSecs);
       const double weight = problem.weight(here[i]), size = glm::length(here[i]);
-      ofPair += weight * glm::dot(slope, here[i]);
+      score.ofRegion[static_cast<std::size_t>(pair.rays[i].region)] += weight * glm::dot(slope, here[i]);
       step.information += weight * glm::dot(slope, slope);
       step.sizes.push_back(size);
       if (size < kFittingPx) step.squares += size * size, ++step.fitting;
     }
-    gradient += ofPair;
-    scatter += ofPair * ofPair;
+    gradient += score.gradient();
+    scores.push_back(score);
     step.tracks += static_cast<int>(here.size());
     ++step.pairs;
   }
   if (step.information > 0) {
     step.change = -gradient / step.information;
-    const double few = step.pairs > 1 ? static_cast<double>(step.pairs) / (step.pairs - 1) : 1;
-    step.variance = few * scatter / (step.information * step.information);
+    step.variance = (varianceByTime(scores) + varianceByRegion(scores)) / (step.information * step.information);
   }
   return step;
 }
@@ -283,6 +337,8 @@ Result<ClockOffset> estimateClockOffset(const std::vector<TrackedPair>& pairs, c
     return notFound(answer, fmt::format("{:+.3f} s and {:+.3f} s explain the pictures equally well: the movement repeats itself. "
                                         "Search a narrower range, or use more pictures", offset, search.offsets[i]));
   }
+  if (!std::isfinite(answer.stdSecs))
+    return notFound(answer, "the pictures span too short a time to tell how sure it is. Use a longer video");
   if (answer.stdSecs > options.worstStdSecs)
     return notFound(answer, fmt::format("it is uncertain by {:.0f} ms: the camera moves too little or too evenly. Film it turning and "
                                         "stopping, or set the offset by hand", 1000 * answer.stdSecs));

@@ -38,7 +38,7 @@ struct ClockOffset {
   bool found = false;
   std::string reason;      ///< where it was not found: why, and what to do
   double offsetSecs = 0;
-  double stdSecs = 0;      ///< one sigma, from the scatter between pairs
+  double stdSecs = 0;      ///< one sigma, from the scatter between pairs and between regions of the picture
   double rmsPx = 0;        ///< of the tracks that fit, from their epipolar segments
   double fitting = 0;      ///< share of the tracks within three pixels
   int pairs = 0, tracks = 0;
@@ -51,7 +51,9 @@ struct ClockOffset {
 /// depth; for a camera that only turns the segment is a point.
 ///
 /// A search over the range comes first, Gauss-Newton from its best. The standard deviation is the
-/// sandwich estimator clustered by pair (Liang and Zeger 1986), because the tracks of a pair share their poses' errors.
+/// sandwich estimator (Liang and Zeger 1986), clustered both ways (Cameron, Gelbach and Miller 2011): by pair, because the tracks of
+/// a pair share their poses' errors, with pairs near in time alike (Newey and West 1987); and by region of the picture, because tracks slide
+/// along the same edges from pair to pair.
 ///
 /// Not found, with the reason: too few tracks; a camera that stands still or moves evenly, whose relative poses do not
 /// depend on the offset; another place in the range that explains the pictures as well; the best at the end of
