@@ -108,7 +108,7 @@ TEST(ClockOffset, TracksThatSlideAlongEdgesAndPairsThatOverlapAreNotTakenForInde
   double chiSquared = 0;
   constexpr int kTrials = 30;
   for (std::uint32_t seed = 1; seed <= kTrials; ++seed) {
-    const ClockOffset found = estimate(scene(walking, 0.2, seed, 0.3, 0.05, 0, 4, 0.5));
+    const ClockOffset found = estimate(scene(walking, 0.2, seed, 0.3, 0.05, 0, 4, 0.8));
     ASSERT_TRUE(found.found) << found.report();
     chiSquared += std::pow((found.offsetSecs - 0.2) / found.stdSecs, 2);
   }
