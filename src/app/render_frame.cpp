@@ -132,7 +132,8 @@ CursorReadout readoutAt(const RenderedFrame& frame, const glm::dvec2& pixel) {
   const DepthImage& depth = frame.picture.scanDepth;
   if (depth.empty()) return readout;
   const Camera camera = frame.description.camera.scaledTo(depth.width(), depth.height());
-  const auto hit = hitAt(depth, camera, frame.description.cameraFromWorld, pixel, {frame.poseQuality, frame.scanSpacingM});
+  const RigidTransform pose = frame.description.shutter.poseAtRow(frame.description.cameraFromWorld, pixel.y, depth.height());
+  const auto hit = hitAt(depth, camera, pose, pixel, {frame.poseQuality, frame.scanSpacingM});
   if (!hit) return readout;
   readout.world = hit->world;
   readout.depthM = hit->depthM;

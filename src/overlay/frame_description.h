@@ -50,7 +50,7 @@ struct ResidualMark {
 struct FrameDescription {
   Camera camera;  ///< of the raw picture's size
   RigidTransform cameraFromWorld;
-  RollingShutter shutter;  ///< how the rows were read while the camera moved; the design and what is marked in the world follow it; scan points do not yet
+  RollingShutter shutter;  ///< how the rows were read while the camera moved; the design, the scan and what is marked in the world follow it
   std::shared_ptr<const ColourImage> image;  ///< raw picture; null draws a dark ground
   int width = 0, height = 0;  ///< of the result; 0: the raw picture's. The lens is scaled to it.
 

@@ -9,6 +9,7 @@
 #include <limits>
 #include <vector>
 
+#include "overlay/scan_rows.h"
 #include "raster/depth_spread.h"
 #include "raster/eye_dome.h"
 #include "raster/occlusion.h"
@@ -158,13 +159,17 @@ ScanPictures ScanPainter::draw(const FrameDescription& frame, const Camera& came
                frame.cameraFromWorld.centre(), layers[i].selection);
     pictures.drawn += layers[i].selection.pointCount;
   }
-  if (!shown) return pictures;
+  if (!shown) {
+    moveToRows(camera, frame.shutter, pictures.depth, pictures.colour);
+    return pictures;
+  }
   SplatOptions options = splatOptions(frame);
   options.device = device;
   SplatImages splats = splat(layers, camera, frame.cameraFromWorld, options);
   if (frame.display.points.eyeDome)
     applyEyeDome(splats.depth, {frame.display.points.eyeDomeStrength, 1}, splats.colour);
   pictures.colour = std::move(splats.colour);
+  moveToRows(camera, frame.shutter, pictures.depth, pictures.colour);
   return pictures;
 }
 

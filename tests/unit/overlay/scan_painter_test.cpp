@@ -3,6 +3,7 @@
 
 #include "overlay/scan_painter.h"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
@@ -92,6 +93,47 @@ TEST_F(Wall, APlayedFrameIsJudgedOnHalfItsSizeAndFullSizeComesOfIt) {
   EXPECT_GT(known(played), known(still) * 19 / 20);
   for (int y = 60; y < 180; ++y)
     for (int x = 80; x < 220; ++x) EXPECT_NEAR(played.at(x, y), 8.0, 0.01) << x << ' ' << y;
+}
+
+/// Closed form: the ray of a pixel from the pose of its row meets the plane y = 0.
+TEST_F(Wall, ARollingShutterSeesTheDepthOfEachRowsPose) {
+  lookFrom({0.3, -8, 0.2});
+  frame.shutter.readoutSecs = 0.04;
+  frame.shutter.motion = {{0.2, -0.6, 0.4}, {1.0, 0.5, 2.0}};
+  const ScanPictures seen = draw();
+  frame.shutter = {};
+  const ScanPictures unmoved = draw();
+  frame.shutter.readoutSecs = 0.04;
+  frame.shutter.motion = {{0.2, -0.6, 0.4}, {1.0, 0.5, 2.0}};
+  double worst = 0, worstUnmoved = 0;
+  for (int y = 70; y < 170; ++y) {
+    const RigidTransform worldFromRow = frame.shutter.poseAtRow(frame.cameraFromWorld, y, 240).inverse();
+    for (int x = 90; x < 210; ++x) {
+      const glm::dvec3 ray = worldFromRow.rotationMatrix() * *frame.camera.unproject({x, y});
+      const double depth = -worldFromRow.translation.y / ray.y;
+      ASSERT_TRUE(std::isfinite(seen.depth.at(x, y))) << x << ' ' << y;
+      worst = std::max(worst, std::abs(seen.depth.at(x, y) - depth));
+      worstUnmoved = std::max(worstUnmoved, std::abs(unmoved.depth.at(x, y) - depth));
+    }
+  }
+  EXPECT_LT(worst, 0.005);
+  EXPECT_GT(worstUnmoved, 0.02);
+}
+
+/// The two classes part at x = 0, where rows see the border at places of their own.
+TEST_F(Wall, ShownPointsStandWhereTheirRowSeesThem) {
+  frame.display.points.hiddenClasses.set(6);
+  frame.shutter.readoutSecs = 0.04;
+  frame.shutter.motion = {{0, -0.8, 0}, {1.0, 0, 0}};
+  const ScanPictures seen = draw();
+  for (const int y : {70, 100, 140, 170}) {
+    const auto border = project(frame.camera, frame.shutter, frame.cameraFromWorld * glm::dvec3(0, 0, (119.5 - y) / 200 * 8));
+    ASSERT_TRUE(border);
+    int last = 0;
+    for (int x = 0; x < 320; ++x)
+      if (seen.colour.at(x, y).a > 0) last = x;
+    EXPECT_NEAR(last, border->x, 2.0) << y;
+  }
 }
 
 TEST_F(Wall, PointsChosenForOneFrameServeOthersForAWhile) {
