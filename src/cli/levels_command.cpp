@@ -57,19 +57,51 @@ Result<Points> storeOf(const std::vector<PointBatch>& batches, LevelKind levels,
   return builder.build(progress);
 }
 
-/// Root mean square over the picture of all points, in grey values of 255; what is not drawn counts as black.
-double pictureError(const ColourImage& all, const ColourImage& some) {
-  double sum = 0, pixels = 0;
-  const auto grey = [](const Rgba8& c) { return c.a == 0 ? 0.0 : 0.299 * c.r + 0.587 * c.g + 0.114 * c.b; };
-  for (int y = 0; y < all.height(); ++y) {
-    for (int x = 0; x < all.width(); ++x) {
-      if (all.at(x, y).a == 0) continue;
-      const double apart = grey(all.at(x, y)) - grey(some.at(x, y));
-      sum += apart * apart, pixels += 1;
-    }
+/// How a picture of some points differs from that of all, over the latter's pixels.
+struct PictureError {
+  double grey = 0;   ///< root mean square, of 255; what is not drawn counts as black
+  double depth = 0;  ///< share of the pixels without depth, or with one that is off by more than a hundredth
+};
+
+/// Both are drawn from a few standpoints: from above three sides, and from the middle.
+class Pictures {
+ public:
+  explicit Pictures(const Points& all) : m_camera(*Intrinsics::fromParameters(CameraModel::Pinhole, 960, 540, {700, 700, 479.5, 269.5})) {
+    const glm::dvec3 centre = all->bounds().centre();
+    const double away = std::max(all->bounds().diagonal(), 1e-3);
+    for (const glm::dvec3 from : {glm::dvec3(-0.5, -0.6, 0.5), glm::dvec3(0.7, 0.1, 0.4), glm::dvec3(-0.1, 0.6, 0.2)})
+      m_views.push_back(RigidTransform::cameraLookingAt(centre + away * from, centre));
+    m_views.push_back(RigidTransform::cameraLookingAt(centre, centre + away * glm::dvec3(1, 0.3, -0.1)));
+    for (const RigidTransform& view : m_views) m_all.push_back(draw(all, 1.0, view));
   }
-  return pixels > 0 ? std::sqrt(sum / pixels) : 0;
-}
+
+  PictureError errorOf(const Points& store, double share) const {
+    double squares = 0, wrong = 0, pixels = 0;
+    for (std::size_t v = 0; v < m_views.size(); ++v) {
+      const SplatImages some = draw(store, share, m_views[v]);
+      for (int y = 0; y < some.depth.height(); ++y) {
+        for (int x = 0; x < some.depth.width(); ++x) {
+          const double depth = m_all[v].depth.at(x, y);
+          if (!std::isfinite(depth)) continue;
+          const double apart = grey(m_all[v].colour.at(x, y)) - grey(some.colour.at(x, y));
+          squares += apart * apart, pixels += 1;
+          wrong += !(std::abs(some.depth.at(x, y) - depth) <= 0.01 * depth);
+        }
+      }
+    }
+    return pixels > 0 ? PictureError{std::sqrt(squares / pixels), wrong / pixels} : PictureError{};
+  }
+
+ private:
+  SplatImages draw(const Points& store, double share, const RigidTransform& view) const {
+    return splat({{store, selectShare(*store, share)}}, m_camera, view, {.colour = true});
+  }
+  static double grey(const Rgba8& c) { return c.a == 0 ? 0.0 : 0.299 * c.r + 0.587 * c.g + 0.114 * c.b; }
+
+  const Camera m_camera;
+  std::vector<RigidTransform> m_views;
+  std::vector<SplatImages> m_all;
+};
 
 Result<Answer> compare(const Arguments& arguments, const Progress& progress) {
   const auto batches = sampleOf(arguments, progress.part(0.0, 0.2));
@@ -79,31 +111,24 @@ Result<Answer> compare(const Arguments& arguments, const Progress& progress) {
   const auto random = storeOf(*batches, LevelKind::Random, progress.part(0.5, 0.8));
   if (!random) return fail(random.error());
   if ((*blue)->pointCount() == 0) return fail("There are no points to compare", arguments.input, "Name a scan that has some");
-  const Bounds& bounds = (*blue)->bounds();
-  const Camera camera(*Intrinsics::fromParameters(CameraModel::Pinhole, 960, 540, {700, 700, 479.5, 269.5}));
-  const double away = std::max(bounds.diagonal(), 1e-3);
-  const auto view = RigidTransform::cameraLookingAt(bounds.centre() + away * glm::dvec3(-0.5, -0.6, 0.5), bounds.centre());
-  const auto draw = [&](const Points& store, double share) {
-    return splat({{store, selectShare(*store, share)}}, camera, view, {.colour = true}).colour;
-  };
-  const ColourImage all = draw(*blue, 1.0);
+  const Pictures pictures(*blue);
   Answer answer;
   answer.json = {{"input", arguments.input}, {"points", (*blue)->pointCount()}, {"levels", Json::array()}};
   answer.text = fmt::format("{}: {} points\n  lengths are shares of the hexagonal ideal\n"
-                            "  share  levels      points  ideal m  spacing  hole area %  largest hole  picture rms  spacing histogram %\n",
+                            "  share  levels      points  ideal m  spacing  hole area %  largest hole  grey rms  depth wrong %  spacing histogram %\n",
                             arguments.input, (*blue)->pointCount());
   for (const double share : {0.25, 0.0625, 0.015625}) {
     for (const auto& [name, store] : {std::pair{"blue-noise", *blue}, std::pair{"random", *random}}) {
       if (progress.cancelled()) return fail(cancelledError());
       const LevelSpread spread = spreadOfShare(*store, share);
-      const double error = pictureError(all, draw(store, share));
+      const PictureError error = pictures.errorOf(store, share);
       answer.json["levels"].push_back({{"share", share}, {"levels", name}, {"points", spread.points}, {"ideal_m", spread.idealM},
                                        {"mean_spacing", spread.meanSpacing}, {"spacing_shares", spread.spacings}, {"hole_area", spread.holeArea},
-                                       {"largest_hole", spread.largestHole}, {"picture_rms", error}});
+                                       {"largest_hole", spread.largestHole}, {"picture_rms", error.grey}, {"picture_depth_wrong", error.depth}});
       std::string histogram;
       for (const double part : spread.spacings) histogram += fmt::format(" {:.0f}", 100 * part);
-      answer.text += fmt::format("  {:<6.3f} {:<10} {:>7}  {:>7.4f}  {:>7.3f}  {:>11.2f}  {:>12.2f}  {:>11.2f} {}\n", share, name, spread.points,
-                                 spread.idealM, spread.meanSpacing, 100 * spread.holeArea, spread.largestHole, error, histogram);
+      answer.text += fmt::format("  {:<6.3f} {:<10} {:>7}  {:>7.4f}  {:>7.3f}  {:>11.2f}  {:>12.2f}  {:>8.2f}  {:>13.2f} {}\n", share, name, spread.points,
+                                 spread.idealM, spread.meanSpacing, 100 * spread.holeArea, spread.largestHole, error.grey, 100 * error.depth, histogram);
     }
   }
   return answer;
