@@ -94,7 +94,16 @@ ALIDADE_WIDEST void addToWords(const std::byte* __restrict column, std::size_t b
       return;
     case 2: return add(std::integral_constant<std::size_t, 2>{});
     case 4: return add(std::integral_constant<std::size_t, 4>{});
-    case 6: return add(std::integral_constant<std::size_t, 6>{});
+    case 6:
+      // In two parts: a word put together in memory would have to wait for it.
+      for (std::size_t i = 0; i < count; ++i) {
+        std::uint32_t low;
+        std::uint16_t high;
+        std::memcpy(&low, column + 6 * i, sizeof low);
+        std::memcpy(&high, column + 6 * i + 4, sizeof high);
+        words[i] |= (low | static_cast<std::uint64_t>(high) << 32) << shift;
+      }
+      return;
     case 8: return add(std::integral_constant<std::size_t, 8>{});
     default: return add(bytes);
   }
