@@ -14,6 +14,7 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "camera/camera.h"
+#include "camera/rolling_shutter.h"
 #include "geometry/rigid_transform.h"
 
 namespace alidade {
@@ -47,6 +48,9 @@ struct NetworkFrame {
   int pose = -1, camera = -1;
   int mount = -1;                         ///< -1: the pose is the camera's own
   int pictureWidth = 0, pictureHeight = 0;  ///< of the picture itself, where known: it must fit the calibration
+  /// Picks and edges are held to the pose of the row that they were seen in; the motion is taken as known. The frame's pose is
+  /// that of the middle row, which depths refer to.
+  RollingShutter shutter = {};
 };
 
 enum class PointKind {

@@ -37,6 +37,15 @@ Term NetworkTerms::frameTerm(int frame) const {
   return term;
 }
 
+int NetworkTerms::rowPose(int frame, const glm::dvec2& pixel) {
+  const NetworkFrame& seen = m_network.frames[frame];
+  if (!seen.shutter.isOn()) return -1;
+  const int height = m_network.cameras[seen.camera].intrinsics.height;
+  const RigidTransform rowFromMiddle = exponential(seen.shutter.motion * seen.shutter.secsAtRow(pixel.y, height));
+  m_rowPoses.push_back({rowFromMiddle.rotationMatrix(), rowFromMiddle.translation});
+  return static_cast<int>(m_rowPoses.size()) - 1;
+}
+
 void NetworkTerms::addObservations() {
   const auto add = [&](Term term, ResidualKind kind, std::size_t index, int point, bool heldOut, bool robust) {
     term.kind = kind, term.index = static_cast<int>(index), term.point = point;
@@ -48,10 +57,16 @@ void NetworkTerms::addObservations() {
   for (std::size_t i = 0; i < m_network.observations.size(); ++i) {
     const PictureObservation& o = m_network.observations[i];
     const auto kind = kinds[static_cast<std::size_t>(m_network.points[o.point].kind)];
-    add(frameTerm(o.frame), kind, i, o.point, o.heldOut, true);
+    Term term = frameTerm(o.frame);
+    term.row = rowPose(o.frame, o.pixel);
+    add(term, kind, i, o.point, o.heldOut, true);
   }
-  for (std::size_t i = 0; i < m_network.edges.size(); ++i)
-    add(frameTerm(m_network.edges[i].frame), ResidualKind::Edge, i, -1, m_network.edges[i].heldOut, true);
+  for (std::size_t i = 0; i < m_network.edges.size(); ++i) {
+    const EdgeObservation& o = m_network.edges[i];
+    Term term = frameTerm(o.frame);
+    term.row = rowPose(o.frame, o.pixel);
+    add(term, ResidualKind::Edge, i, -1, o.heldOut, true);
+  }
   for (std::size_t i = 0; i < m_network.depths.size(); ++i) {
     const DepthObservation& o = m_network.depths[i];
     Term term = frameTerm(o.frame);
@@ -134,7 +149,9 @@ bool NetworkTerms::project(const Prepared& prepared, const Term& term, const glm
   const Prepared::View& view = prepared.views[term.frame];
   const glm::dvec3 inBody = view.bodyFromWorld * (point - view.centre);
   const glm::dvec3 turned = view.mounted ? view.cameraFromBody * inBody : inBody;
-  const glm::dvec3 p = view.mounted ? turned + view.translation : inBody;
+  const glm::dvec3 inCamera = view.mounted ? turned + view.translation : inBody;
+  const RowPose* row = term.row < 0 ? nullptr : &m_rowPoses[term.row];
+  const glm::dvec3 p = row ? *row * inCamera : inCamera;
   to.rows = 2;
   if (!(p.z > nearest)) return false;
   if (!derivatives) {
@@ -146,7 +163,7 @@ bool NetworkTerms::project(const Prepared& prepared, const Term& term, const glm
   const int calibration = term.blocks[2];
   view.camera->project(p, calibration >= 0, at);
   to.residual[0] = at.pixel.x, to.residual[1] = at.pixel.y;
-  const glm::dvec3 rows[2] = {at.du, at.dv};
+  const glm::dvec3 rows[2] = {row ? at.du * row->rotation : at.du, row ? at.dv * row->rotation : at.dv};
   for (int r = 0; r < 2; ++r) {
     const glm::dvec3 byBody = view.mounted ? rows[r] * view.cameraFromBody : rows[r];
     const glm::dvec3 byPoint = byBody * view.bodyFromWorld;
@@ -173,7 +190,11 @@ bool NetworkTerms::edge(const Prepared& prepared, const Term& term, bool derivat
   const EdgeObservation& seen = m_network.edges[term.index];
   const Prepared::View& view = prepared.views[term.frame];
   const glm::dvec3 from = seen.from - m_layout.origin, along = seen.to - seen.from;
-  const glm::dvec3 start = view.inCamera(from), end = view.inCamera(from + along), d = end - start;
+  const auto inCamera = [&](const glm::dvec3& point) {
+    const glm::dvec3 p = view.inCamera(point);
+    return term.row < 0 ? p : m_rowPoses[term.row] * p;
+  };
+  const glm::dvec3 start = inCamera(from), end = inCamera(from + along), d = end - start;
   // A place before the camera to begin with: the middle of what is at least a tenth of the farther end's depth.
   const double farther = std::max(start.z, end.z);
   if (!(farther > nearest)) return false;

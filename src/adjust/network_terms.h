@@ -22,6 +22,7 @@ struct Term {
   int slot = -1;   ///< of that point, -1: none or known exactly
   std::array<int, 3> blocks{-1, -1, -1};
   bool heldOut = false;
+  int row = -1;         ///< into the poses of rows; -1: the frame's own
   bool robust = false;  ///< Huber's loss and the hunt for outliers apply
 };
 
@@ -42,7 +43,8 @@ struct TermValue {
 };
 
 /// All terms of a network and their values at a state. Thread-safe once made. The derivatives: with
-/// p = R (X - C), dp/dC = -R, dp/dX = R and, for R' = exp([w]×) R, dp/dw = -[p]×.
+/// p = R (X - C), dp/dC = -R, dp/dX = R and, for R' = exp([w]×) R, dp/dw = -[p]×. A row of a rolling shutter sees E p, where E, what
+/// the camera moved since the middle row, is known from where the observation was made: a constant.
 class NetworkTerms {
  public:
   NetworkTerms(const Network& network, const NetworkLayout& layout);
@@ -81,6 +83,13 @@ class NetworkTerms {
   struct TrajectoryUse { int trajectory, pose; };
   struct SmoothnessUse { int smoothness, a, b, c; };
 
+  struct RowPose {  ///< rowFromMiddle of a rolling shutter
+    glm::dmat3 rotation;
+    glm::dvec3 translation;
+    glm::dvec3 operator*(const glm::dvec3& p) const { return rotation * p + translation; }
+  };
+
+  int rowPose(int frame, const glm::dvec2& pixel);
   void addObservations();
   void addMotion();
   bool edge(const Prepared& prepared, const Term& term, bool derivatives, TermValue& to) const;
@@ -93,6 +102,7 @@ class NetworkTerms {
   const Network& m_network;
   const NetworkLayout& m_layout;
   std::vector<Term> m_terms;
+  std::vector<RowPose> m_rowPoses;
   std::vector<PriorForm> m_priors;
   std::vector<TrajectoryUse> m_trajectoryUses;
   std::vector<SmoothnessUse> m_smoothnessUses;

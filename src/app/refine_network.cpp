@@ -9,6 +9,7 @@
 
 #include <fmt/format.h>
 
+#include "app/pose_clock.h"
 #include "plugin_api/picture_header.h"
 
 namespace alidade {
@@ -69,6 +70,7 @@ Result<int> Builder::addFrame(FrameId id, const ObservationRow& row) {
   made.name = frame.name;
   made.pose = static_cast<int>(m_made.network.poses.size());
   made.camera = cameraOf(*record);
+  made.shutter = shutterOf(m_project, frame);
   // A picture that is not there cannot contradict its calibration; opening it says so elsewhere.
   if (const auto header = frame.image.path.empty() ? Result<PictureHeader>(PictureHeader{}) : readPictureHeader(frame.image.path))
     made.pictureWidth = header->width, made.pictureHeight = header->height;

@@ -38,6 +38,7 @@ Network everything(const Intrinsics& intrinsics) {
   n.cameras[0].freeFocal = n.cameras[0].freePrincipalPoint = n.cameras[0].freeDistortion = true;
   n.mounts.push_back({"mount", {glm::normalize(glm::dquat(0.99, 0.02, -0.05, 0.03)), {0.1, -0.2, 0.05}}, {}});
   n.frames[1].mount = n.frames[2].mount = 0;
+  n.frames[2].shutter = n.frames[3].shutter = {0.03, {{0.3, -0.5, 0.4}, {1, -2, 0.5}}};
   for (std::size_t i = 0; i < n.points.size(); ++i)
     if (n.points[i].kind == PointKind::Tie) n.points[i].surface = SurfaceHold{{1, 2, 3}, {0.2, -0.3, 0.9}, 0.02};
   for (int f = 0; f < 4; ++f) n.edges.push_back({f, {-3, 0, 1}, {4, 1, 2.5}, {900 + 10.0 * f, 500}, 0.5, false, "edge"});

@@ -45,6 +45,29 @@ TEST(Network, FindsTheExactPosesAndPointsFromExactPicks) {
   EXPECT_EQ(summary.outlierCount(), 0);
 }
 
+/// The rows are looked up again and again with the true motion: exact picks of a camera that turns and walks.
+TEST(Network, PicksOfARollingShutterGiveTheMiddleRowsPose) {
+  NetworkSite site = arcSite({.noisePx = 0});
+  const Camera camera(site.network.cameras[0].intrinsics);
+  const RollingShutter shutter{0.03, {{0.3, -0.5, 0.4}, {1, -2, 0.5}}};
+  for (PictureObservation& seen : site.network.observations) {
+    const glm::dvec3 inCamera = site.poses[seen.frame] * site.points[seen.point];
+    for (int i = 0; i < 30; ++i)
+      seen.pixel = camera.projectUnchecked(exponential(shutter.motion * shutter.secsAtRow(seen.pixel.y, camera.height())) * inCamera);
+  }
+  const auto worstOf = [&](const RollingShutter& taken) {
+    for (NetworkFrame& frame : site.network.frames) frame.shutter = taken;
+    const auto summary = adjustNetwork(site.network);
+    EXPECT_TRUE(summary) << summary.error().text();
+    double worst = 0;
+    for (std::size_t i = 0; summary && i < site.poses.size(); ++i)
+      worst = std::max(worst, glm::length(summary->poses[i].bodyFromWorld.centre() - site.poses[i].centre()));
+    return worst;
+  };
+  EXPECT_LT(worstOf(shutter), 1e-6);
+  EXPECT_GT(worstOf({}), 0.005);
+}
+
 TEST(Network, IsTheSameTenThousandKilometresAway) {
   NetworkSiteOptions here, there;
   there.where = {1e7, -1e7, 1e4};
