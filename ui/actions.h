@@ -73,6 +73,7 @@ enum class Command {
   ToolCallout,
   Resection,
   AutoAlign,
+  AlignSequence,
   RefinePose,
   AcceptPose,
   DropPose,

@@ -97,7 +97,7 @@ void MainWindow::buildMenus() {
   for (const Command c : {C::ThemeDark, C::ThemeLight, C::ThemeContrast}) theme->addAction(a[c]);
   fill(tr("F&rame"), {id(C::Play), id(C::PreviousFrame), id(C::NextFrame), id(C::PreviousTen), id(C::NextTen),
                       id(C::FirstFrame), id(C::LastFrame)});
-  fill(tr("A&lign"), {id(C::Resection), id(C::AutoAlign), id(C::RefinePose), id(C::AcceptPose), id(C::DropPose), -1,
+  fill(tr("A&lign"), {id(C::Resection), id(C::AutoAlign), id(C::AlignSequence), id(C::RefinePose), id(C::AcceptPose), id(C::DropPose), -1,
                       id(C::CalibrateCamera)});
   fill(tr("&Inspect"), {id(C::ToolSelect), id(C::ToolPick), id(C::ToolMeasure), id(C::ClearMeasurements), -1,
                         id(C::HideSelected), id(C::IsolateStorey), id(C::ShowAllElements), -1, id(C::ShowCleaning)});
@@ -404,6 +404,10 @@ void MainWindow::connectFrameActions() {
     (*m_actions)[C::Resection]->trigger();
     m_refinement->alignAutomatically();
   });
+  connect(a[C::AlignSequence], &QAction::triggered, this, [this] {
+    (*m_actions)[C::Resection]->trigger();
+    m_refinement->alignSequence();
+  });
   connect(a[C::RefinePose], &QAction::triggered, m_refinement, &PoseRefinement::refine);
   connect(a[C::AcceptPose], &QAction::triggered, m_refinement, &PoseRefinement::accept);
   connect(a[C::DropPose], &QAction::triggered, m_refinement, &PoseRefinement::drop);
@@ -547,6 +551,7 @@ void MainWindow::refreshEnabled() {
   a[C::IsolateStorey]->setEnabled(element);
   a[C::RefinePose]->setEnabled(frames && !m_refinement->running() && !m_refinement->observations(m_refinement->scope()).empty());
   a[C::AutoAlign]->setEnabled(frames && !m_refinement->running() && m_session->currentFrame()->cameraFromWorld);
+  a[C::AlignSequence]->setEnabled(frames && m_session->project()->frames.size() > 1 && !m_refinement->running());
   a[C::AcceptPose]->setEnabled(m_refinement->hasCandidate());
   a[C::DropPose]->setEnabled(m_refinement->hasCandidate());
 }

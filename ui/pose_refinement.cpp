@@ -13,6 +13,9 @@ namespace alidade {
 
 namespace {
 
+/// Of a long sequence every so many frames are aligned; those between follow.
+constexpr int kMostKeyframes = 60;
+
 struct RefineOutcome {
   NetworkSummary summary;
   std::vector<std::string> frameNames;
@@ -188,7 +191,7 @@ void PoseRefinement::refine() {
         if (!outcome) {
           m_session.messages().error(outcome.error());
         } else if (m_session.project() == project) {
-          m_alignment.reset();
+          forgetSummaries();
           m_summary = std::move(outcome->summary);
           m_frameNames = std::move(outcome->frameNames);
           m_outliers = std::move(outcome->outliers);
@@ -224,10 +227,45 @@ void PoseRefinement::alignAutomatically() {
         if (!outcome) {
           m_session.messages().error(outcome.error());
         } else if (m_session.project() == project) {
-          m_summary.reset();
-          m_outliers.clear();
+          forgetSummaries();
           m_alignment = std::move(outcome->summary);
           if (m_alignment->converged) propose(project, outcome->project, name);
+        }
+        emit changed();
+      });
+}
+
+void PoseRefinement::alignSequence() {
+  if (m_running || m_session.project()->frames.empty()) return;
+  struct Outcome {
+    SequenceSummary summary;
+    std::shared_ptr<const Project> project;
+  };
+  const auto project = m_session.project();
+  const QString name = tr("Align all frames");
+  m_running = true;
+  emit changed();
+  m_session.jobs().run(
+      name,
+      [project, data = m_session.data()](const Progress& progress) -> Result<Outcome> {
+        SequenceOptions options;
+        options.everyNth = std::max(1, static_cast<int>(project->frames.size()) / kMostKeyframes);
+        Project copy = *project;
+        PictureCache pictures(2);
+        auto summary = refineSequence(copy, alignmentScene(copy, *data, alignmentTarget(copy)), pictures, options, false, progress);
+        if (!summary) return fail(summary.error());
+        return Outcome{std::move(*summary), std::make_shared<const Project>(std::move(copy))};
+      },
+      [this, project, name](Result<Outcome> outcome) {
+        m_running = false;
+        if (!outcome) {
+          m_session.messages().error(outcome.error());
+        } else if (m_session.project() == project) {
+          forgetSummaries();
+          m_sequence = std::move(outcome->summary);
+          m_summary = m_sequence->adjustment;
+          for (const NetworkFrame& frame : m_sequence->network.frames) m_frameNames.push_back(frame.name);
+          if (m_sequence->converged) propose(project, outcome->project, name);
         }
         emit changed();
       });
@@ -263,10 +301,16 @@ void PoseRefinement::drop() {
 
 void PoseRefinement::forget() {
   m_candidate.reset();
+  forgetSummaries();
+  emit changed();
+}
+
+void PoseRefinement::forgetSummaries() {
   m_summary.reset();
   m_alignment.reset();
+  m_sequence.reset();
+  m_frameNames.clear();
   m_outliers.clear();
-  emit changed();
 }
 
 std::optional<glm::dvec2> PoseRefinement::residual(const Observation& observation) const {

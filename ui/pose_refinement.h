@@ -11,6 +11,7 @@
 #include "app/auto_align.h"
 #include "app/jobs.h"
 #include "app/refine_network.h"
+#include "app/refine_sequence.h"
 #include "ui/session.h"
 
 namespace alidade {
@@ -46,14 +47,18 @@ class PoseRefinement : public QObject {
   void refine();
   /// Fits the current frame to the scan without any observation. A pose that is not believed is not proposed.
   void alignAutomatically();
+  /// Fits all frames with a pose to the scan and adjusts them together: tie points, smooth motion, alarm where a camera
+  /// that stood still moved.
+  void alignSequence();
   bool running() const { return m_running; }
   bool hasCandidate() const { return m_candidate != nullptr; }
   void accept();
   void drop();
 
-  /// What the last refinement came to; one of the two, or none.
+  /// What the last refinement came to: a summary, of a sequence too, or an alignment, or none.
   const std::optional<NetworkSummary>& summary() const { return m_summary; }
   const std::optional<AlignmentSummary>& alignment() const { return m_alignment; }
+  const std::optional<SequenceSummary>& sequence() const { return m_sequence; }
   const std::vector<std::string>& frameNames() const { return m_frameNames; }  ///< of the summary's poses
   bool isOutlier(ObservationId id) const { return m_outliers.contains(id); }
   /// Fitted - observed at the pose now shown; nothing where it is not seen.
@@ -64,6 +69,7 @@ class PoseRefinement : public QObject {
 
  private:
   void forget();
+  void forgetSummaries();
   void propose(std::shared_ptr<const Project> base, std::shared_ptr<const Project> candidate, const QString& name);
   void showCandidate();
 
@@ -75,6 +81,7 @@ class PoseRefinement : public QObject {
   QString m_candidateName;
   std::optional<NetworkSummary> m_summary;
   std::optional<AlignmentSummary> m_alignment;
+  std::optional<SequenceSummary> m_sequence;
   std::vector<std::string> m_frameNames;
   std::set<ObservationId> m_outliers;
   bool m_running = false;

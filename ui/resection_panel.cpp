@@ -55,6 +55,7 @@ ResectionPanel::ResectionPanel(Session& session, PoseRefinement& refinement, Ove
   m_scale->setToolTip(tr("How much longer than true the residual vectors are drawn. Hold V to hide them"));
   m_form->outer->insertWidget(m_form->outer->indexOf(table) + 1, m_scale);
   connect(m_form->align, &QPushButton::clicked, &m_refinement, &PoseRefinement::alignAutomatically);
+  connect(m_form->alignAll, &QPushButton::clicked, &m_refinement, &PoseRefinement::alignSequence);
   connect(m_form->pick, &QPushButton::clicked, this, &ResectionPanel::startPick);
   connect(m_form->match, &QPushButton::clicked, this, [this] { m_refinement.matchInOtherFrames(selected()); });
   connect(m_form->judge, &QPushButton::clicked, this, [this] {
@@ -234,6 +235,7 @@ void ResectionPanel::refresh() {
   const Frame* frame = m_session.currentFrame();
   const bool hasModel = !m_session.project()->scans.empty() || !m_session.project()->designs.empty();
   m_form->align->setEnabled(frame && frame->cameraFromWorld && hasModel && !m_refinement.running());
+  m_form->alignAll->setEnabled(m_session.project()->frames.size() > 1 && hasModel && !m_refinement.running());
   m_form->pick->setEnabled(frame != nullptr);
   m_form->match->setEnabled(static_cast<bool>(selected()) && m_session.project()->frames.size() > 1);
   m_form->judge->setEnabled(frame != nullptr);
@@ -259,6 +261,19 @@ QString ResectionPanel::alignmentWords() const {
   return lines.join('\n');
 }
 
+QStringList ResectionPanel::sequenceWords() const {
+  const SequenceSummary& found = *m_refinement.sequence();
+  const auto count = [&](auto which) { return static_cast<int>(std::count_if(found.frames.begin(), found.frames.end(), which)); };
+  QStringList lines{tr("%1 of %2 keyframes found themselves, %3 refined")
+                        .arg(count([](const SequenceFrame& f) { return f.aligned; }))
+                        .arg(found.frames.size())
+                        .arg(count([](const SequenceFrame& f) { return f.refined; }))};
+  for (const MovementAlarm& alarm : found.alarms)
+    if (const Frame* frame = m_session.project()->findFrame(alarm.frame))
+      lines << tr("▲ The camera moved by %1 before %2").arg(formatMillimetres(alarm.metres), text(frame->name));
+  return lines;
+}
+
 void ResectionPanel::refreshSummary() {
   const auto& summary = m_refinement.summary();
   if (!summary) {
@@ -266,8 +281,10 @@ void ResectionPanel::refreshSummary() {
     return;
   }
   QStringList lines;
-  if (!summary->converged) {
-    lines << tr("✕ Not refined: %1").arg(text(summary->reason));
+  if (m_refinement.sequence()) lines = sequenceWords();
+  const bool converged = m_refinement.sequence() ? m_refinement.sequence()->converged : summary->converged;
+  if (!converged) {
+    lines << tr("✕ Not refined: %1").arg(text(m_refinement.sequence() ? m_refinement.sequence()->reason : summary->reason));
     m_form->summary->setText(lines.join('\n'));
     return;
   }

@@ -31,6 +31,7 @@ constexpr int kFineRounds = 5;
 constexpr int kHalf = 10;
 constexpr double kStillPx = 0.05;
 constexpr std::size_t kCandidates = 6;
+constexpr double kRangeShare = 1.2;
 constexpr std::size_t kEdgeChoiceLevel = 2;
 
 double meanOf(const Image<float>& luma) {
@@ -82,16 +83,16 @@ class Aligner {
     AlignmentSummary summary;
     summary.startCameraFromWorld = summary.cameraFromWorld = m_start;
     summary.levelScale = m_levels.back().scale;
-    if (candidates.empty()) {
+    if (candidates.empty() && m_scene.hasColour()) {
       summary.reason = "no place of the scene could be found in the picture";
       return summary;
     }
     const std::vector<Tried> tried = tryCandidates(candidates);
+    if (!m_scene.hasColour()) return fitByEdges(tried, std::move(summary));
     if (tried.empty()) {
       summary.reason = "no pose within the range brings the scene and the picture together";
       return summary;
     }
-    if (!m_scene.hasColour()) return fitByEdges(tried, std::move(summary));
     RigidTransform pose = tried.front().pose;
     if (tried.size() > 1) summary.evidence.rivalScore = tried[1].score / std::max(1e-9, tried.front().score);
     for (std::size_t level = 1; level < m_levels.size(); ++level) {
@@ -163,9 +164,15 @@ class Aligner {
     return options;
   }
 
-  /// From size to size by edges; at the smaller sizes all candidates, of which the best goes on.
+  bool isWithinRange(const RigidTransform& pose) const {
+    return glm::distance(pose.centre(), m_start.centre()) <= kRangeShare * m_options.range.positionM &&
+           rotationAngleBetween(pose, m_start) <= kRangeShare * m_options.range.rotationRad;
+  }
+
+  /// From size to size by edges; at the smaller sizes all candidates and the start, of which the best goes on.
   Result<AlignmentSummary> fitByEdges(std::vector<Tried> tried, AlignmentSummary summary) const {
     const PoseKnowledge known = knowledgeOf(m_start, m_options);
+    tried.push_back({m_start});
     const std::size_t choose = std::min(kEdgeChoiceLevel, m_levels.size() - 1);
     FineFit fit;
     for (std::size_t level = 1; level < m_levels.size(); ++level) {
@@ -174,7 +181,7 @@ class Aligner {
       for (Tried& candidate : tried) {
         if (m_progress.cancelled()) return fail(cancelledError());
         fit = fitEdges(m_scene, m_levels[level], candidate.pose, known);
-        candidate.score = fit.estimate ? fit.score : 0;
+        candidate.score = fit.estimate && isWithinRange(fit.estimate->cameraFromWorld) ? fit.score : 0;
         if (fit.estimate) candidate.pose = fit.estimate->cameraFromWorld;
         if (world.empty())
           for (const Anchor& anchor : fit.anchors) world.push_back(anchor.world);

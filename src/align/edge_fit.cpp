@@ -32,6 +32,7 @@ constexpr int kDraws = 3;
 /// Other poses that are tried at each draw: this many, off by this much at the sites, one standard deviation.
 constexpr int kOthers = 3000;
 constexpr std::array<double, kDraws> kOthersPx = {8, 4, 4};
+constexpr double kRangeSigmas = 2.4;
 /// Poses nearer to each other than this are one.
 constexpr double kApartPx = 4;
 
@@ -159,8 +160,14 @@ struct Others {
   double chance = 0;      ///< mean score
 };
 
-/// Many poses around one, by how the photo's edges agree with the sites there. Fixed seed.
-Others tryOthers(const std::vector<EdgeSite>& sites, const PictureLevel& level, const RigidTransform& pose, double deviationPx) {
+bool isWithin(const RigidTransform& pose, const PoseKnowledge& known) {
+  return glm::distance(pose.centre(), known.cameraFromWorld.centre()) <= kRangeSigmas * known.positionSigmaM &&
+         rotationAngleBetween(pose, known.cameraFromWorld) <= kRangeSigmas * known.rotationSigmaRad;
+}
+
+/// Many poses around one, not beyond the range, by how the photo's edges agree with the sites there. Fixed seed.
+Others tryOthers(const std::vector<EdgeSite>& sites, const PictureLevel& level, const RigidTransform& pose, double deviationPx,
+                 const PoseKnowledge& known) {
   std::vector<glm::dvec3> world;
   std::vector<double> depths;
   for (std::size_t i = 0; i < sites.size(); i += std::max<std::size_t>(1, sites.size() / 200)) {
@@ -186,7 +193,7 @@ Others tryOthers(const std::vector<EdgeSite>& sites, const PictureLevel& level, 
   });
   found.chance = std::accumulate(scores.begin(), scores.end(), 0.0) / static_cast<double>(scores.size());
   for (std::size_t i = 0; i < poses.size(); ++i)
-    if (scores[i] > found.score) found.best = poses[i], found.score = scores[i];
+    if (scores[i] > found.score && isWithin(poses[i], known)) found.best = poses[i], found.score = scores[i];
   for (std::size_t i = 0; i < poses.size(); ++i)
     if (scores[i] > found.asideScore && distancePx(world, level.camera, poses[i], found.best) > kApartPx) found.asideScore = scores[i];
   return found;
@@ -212,7 +219,7 @@ FineFit fitEdges(const AlignmentScene& scene, const PictureLevel& level, const R
       fit.anchors.push_back(std::move(anchor));
       world.push_back(site.world);
     }
-    const Others others = tryOthers(sites, level, pose, kOthersPx[draw]);
+    const Others others = tryOthers(sites, level, pose, kOthersPx[draw], known);
     pose = others.best;
     for (const double reachPx : kReachPx) {
       if (draw > 0 && reachPx > kReachPx[2]) continue;

@@ -273,9 +273,9 @@ void addRefine(Verbs& verbs) {
       ->check(CLI::Range(1, 10000));
   command->add_option("--within", arguments->withinPx, "With --auto and --sequence: the 95 % error, pixels of 1920 across, up to which a pose is believed")
       ->check(CLI::Range(0.05, 50.0));
-  command->add_option("--to", arguments->to, "With --auto: what to align with; scan, where one is visible, else design")
+  command->add_option("--to", arguments->to, "With --auto and --sequence: what to align with; scan, where one is visible, else design")
       ->transform(CLI::CheckedTransformer(std::map<std::string, AlignTo>{{"scan", AlignTo::Scans}, {"design", AlignTo::Designs}}))
-      ->needs("--auto");
+      ->excludes("--observations");
   command->add_flag("--dry-run", arguments->dryRun, "Report only; leave the project as it is");
 }
 

@@ -97,7 +97,7 @@ Result<Answer> refineTogether(const RefinePictures& wanted, const Progress& prog
   PictureCache pictures;
   SequenceOptions options;
   options.alignment = wanted.options, options.everyNth = wanted.keyframes;
-  const auto summary = refineSequence(*project, alignmentScene(*project, loaded->data, AlignTo::Scans), pictures, options, wanted.dryRun, progress.part(0.1, 1));
+  const auto summary = refineSequence(*project, alignmentScene(*project, loaded->data, wanted.to.value_or(alignmentTarget(*project))), pictures, options, wanted.dryRun, progress.part(0.1, 1));
   if (!summary) return fail(summary.error());
   const bool save = summary->converged && !wanted.dryRun;
   if (save)

@@ -105,6 +105,19 @@ TEST(CommandLine, ADegenerateSetIsRefusedWithItsReasonAndTheProjectUnchanged) {
   EXPECT_FALSE(outcome.json()["saved"]);
 }
 
+TEST(CommandLine, AlignsAFrameWithTheDesignAndSaysWhatItKnows) {
+  const auto aligned = alidadeCli("refine --json --auto --to design --frame 0 --within 3 --dry-run " + demoProject());
+  ASSERT_EQ(aligned.exitCode, 0) << aligned.errors << aligned.output;
+  const auto frame = aligned.json()["frames"][0];
+  EXPECT_TRUE(frame["converged"]) << frame["reason"];
+  EXPECT_GT(frame["evidence"]["places_agreeing"], 100);
+  EXPECT_LT(frame["turned_rad"], 0.01);
+  EXPECT_FALSE(aligned.json()["saved"]);
+  EXPECT_EQ(alidadeCli("refine --auto --to wall " + demoProject()).exitCode, 2);
+  EXPECT_EQ(alidadeCli("refine --to design --observations x.csv " + demoProject()).exitCode, 2);
+  EXPECT_EQ(alidadeCli("refine --auto --sequence " + demoProject()).exitCode, 2);
+}
+
 TEST(CommandLine, ProjectPointsAlwaysPrintsFourColumns) {
   const auto outcome =
       alidadeCli("project-points " + demoProject() + " --frame 0", "2683500 1247800 412\n0 0 0\nnan 1 2\n# note\n1,2,3\n");
