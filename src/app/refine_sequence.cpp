@@ -26,6 +26,8 @@ constexpr int kTieHalf = 8, kTieRadius = 6;
 constexpr double kTieCorrelation = 0.85, kTieSigmaPx = 0.2;
 constexpr int kLeastTies = 12;
 constexpr double kWeakestPx = 0.7;  // of a place that counts as a point
+constexpr std::size_t kEdgesAPlace = 3;  // a place on an edge knows one direction only
+constexpr double kEdgePiecePx = 5;
 
 bool standsStill(const RigidTransform& a, const RigidTransform& b) {
   return glm::distance(a.centre(), b.centre()) < kStillM && rotationAngleBetween(a, b) < kStillRad;
@@ -36,6 +38,15 @@ double sigmaOf(const SeenPlace& place) {
   const glm::dmat2& w = place.information;
   const double mean = 0.5 * (w[0][0] + w[1][1]), half = std::hypot(0.5 * (w[0][0] - w[1][1]), w[1][0]);
   return 1 / std::sqrt(std::max(1e-9, mean - half));
+}
+
+/// What a place on an edge is good for, and in the picture the unit direction along its edge.
+double sigmaAcross(const SeenPlace& place, glm::dvec2& along) {
+  const glm::dmat2& w = place.information;
+  const double angle = 0.5 * std::atan2(2 * w[1][0], w[0][0] - w[1][1]);
+  along = {-std::sin(angle), std::cos(angle)};
+  const double mean = 0.5 * (w[0][0] + w[1][1]), half = std::hypot(0.5 * (w[0][0] - w[1][1]), w[1][0]);
+  return 1 / std::sqrt(std::max(1e-9, mean + half));
 }
 
 class Sequence {
@@ -268,12 +279,37 @@ class Sequence {
     return n;
   }
 
+  /// Places of edges, each with a piece of its edge at its own depth.
+  void addEdges(const Key& key, int frame, Network& n) const {
+    const Camera& camera = m_project.findCamera(key.camera)->camera;
+    const std::size_t step = std::max<std::size_t>(1, key.places.size() / (static_cast<std::size_t>(m_options.placesAFrame) * kEdgesAPlace));
+    const int held = heldOutEvery();
+    int taken = 0;
+    for (std::size_t i = 0; i < key.places.size(); i += step) {
+      const SeenPlace& place = key.places[i];
+      const glm::dvec3 here = key.guess * place.world;
+      const auto pixel = camera.project(here);
+      glm::dvec2 along(0);
+      const double sigma = key.alignment.estimate.sigma0 * sigmaAcross(place, along);
+      const auto beside = pixel ? camera.unproject(*pixel + kEdgePiecePx * key.alignment.levelScale * along) : std::nullopt;
+      if (!beside) continue;
+      const glm::dvec3 to = key.guess.inverse() * (*beside * here.z);
+      const bool isHeldOut = held > 0 && ++taken % held == 0;
+      n.edges.push_back({frame, place.world, to, place.pixel, sigma, isHeldOut, fmt::format("{} edge {}", n.frames[frame].name, taken)});
+    }
+  }
+
+  int heldOutEvery() const {
+    return m_options.heldOutShare > 0 ? std::max(2, static_cast<int>(std::lround(1 / m_options.heldOutShare))) : 0;
+  }
+
   void addPlaces(const Key& key, int frame, Network& n) const {
+    if (!m_scene.hasColour()) return addEdges(key, frame, n);
     std::vector<const SeenPlace*> sure;
     for (const SeenPlace& place : key.places)
       if (sigmaOf(place) < kWeakestPx * key.alignment.levelScale) sure.push_back(&place);
     const std::size_t step = std::max<std::size_t>(1, sure.size() / static_cast<std::size_t>(m_options.placesAFrame));
-    const int held = m_options.heldOutShare > 0 ? std::max(2, static_cast<int>(std::lround(1 / m_options.heldOutShare))) : 0;
+    const int held = heldOutEvery();
     int taken = 0;
     for (std::size_t i = 0; i < sure.size(); i += step) {
       NetworkPoint point;
