@@ -334,7 +334,7 @@ class Sequence {
       summary.frames.push_back(frame);
     }
     if (aligned == 0) {
-      summary.reason = "no frame could be aligned with the scan: " + m_keys.front().reason;
+      summary.reason = "no frame could be aligned: " + m_keys.front().reason;
       return summary;
     }
     summary.network = networkOf(summary.poseOf);
