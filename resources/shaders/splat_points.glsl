@@ -17,7 +17,7 @@ struct Run {
   vec4 x, y, z;  // rows: camera axes from node steps, then the node's origin
   vec4 size;     // footprint: size times depth, smallest, largest (0: one pixel), 1 where round
   ivec4 cells;   // first step of the normals' cells, then their shift
-  uvec4 what;    // payload of the first point, first normal (all ones: none), unused
+  uvec4 what;    // payload of the first point, first normal (all ones: none), what footprints lose (a float's bits), unused
 };
 
 layout(std140, set = 0, binding = 0) uniform FrameBlock {
@@ -39,10 +39,7 @@ void drawPixel(vec2 at, float z, uint payload) {
 }
 
 // Inverse depth, then how it changes along u and along v; 0 where the footprint is of one depth.
-vec3 tiltOf(Run run, uvec3 steps, vec2 xy, vec2 at, float z) {
-  if (run.what.y == 0xffffffffu) return vec3(0.0);
-  ivec3 cell = clamp((ivec3(steps) - run.cells.xyz) >> run.cells.w, ivec3(0), ivec3(7));
-  vec3 normal = normals[run.what.y + uint(cell.x + 8 * cell.y + 64 * cell.z)].xyz;
+vec3 tiltOf(vec3 normal, vec2 xy, vec2 at, float z) {
   float step = 0.01 * (1.0 + (xy.x * xy.x + xy.y * xy.y));
   vec2 alongX = (pixelOfDistorted(distortPoint(xy + vec2(step, 0.0), lens), lens) - at) * (1.0 / step);
   vec2 alongY = (pixelOfDistorted(distortPoint(xy + vec2(0.0, step), lens), lens) - at) * (1.0 / step);
@@ -55,13 +52,21 @@ vec3 tiltOf(Run run, uvec3 steps, vec2 xy, vec2 at, float z) {
               (normal.y * alongX.x - normal.x * alongY.x) * scale);
 }
 
+vec4 surfaceAt(Run run, uvec3 steps) {
+  if (run.what.y == 0xffffffffu) return vec4(0.0, 0.0, 0.0, 1.0);
+  ivec3 cell = clamp((ivec3(steps) - run.cells.xyz) >> run.cells.w, ivec3(0), ivec3(7));
+  return normals[run.what.y + uint(cell.x + 8 * cell.y + 64 * cell.z)];
+}
+
 void drawFootprint(Run run, uvec3 steps, vec2 xy, vec2 at, float z, uint payload) {
-  float size = max(min(run.size.x / z, run.size.z), run.size.y);
+  vec4 surface = surfaceAt(run, steps);
+  precise float size = max(min(run.size.x * surface.w / z - uintBitsToFloat(run.what.z), run.size.z), run.size.y);
   float halfSize = 0.5 * size;
   vec2 extent = vec2(frame.xy);
   if (!(at.x + halfSize > -0.5 && at.x - halfSize < extent.x - 0.5 && at.y + halfSize > -0.5 &&
         at.y - halfSize < extent.y - 0.5)) return;
-  vec3 tilt = size > 1.0 ? tiltOf(run, steps, xy, at, z) : vec3(0.0);
+  vec3 tilt = size > 1.0 ? tiltOf(surface.xyz, xy, at, z) : vec3(0.0);
+  float bend = 0.0005 * tilt.x / (size * size);
   float halfWidth = 0.5 * size / lens.focal.x;
   float least = tilt.x / (1.0 + halfWidth);
   float most = halfWidth < 0.9 ? tilt.x / (1.0 - halfWidth) : 10.0 * tilt.x;
@@ -75,7 +80,7 @@ void drawFootprint(Run run, uvec3 steps, vec2 xy, vec2 at, float z, uint payload
       if (off.x * off.x + off.y * off.y > radiusSquared) continue;
       float depth = z;
       if (tilt.x > 0.0) {
-        float inverse = tilt.x + (tilt.y * off.x + tilt.z * off.y);
+        float inverse = tilt.x + (tilt.y * off.x + tilt.z * off.y) - bend * (off.x * off.x + off.y * off.y);
         bool beyond = inverse < least || inverse > most;
         if (beyond && ivec2(x, y) != middle) continue;
         depth = 1.0 / clamp(inverse, least, most);

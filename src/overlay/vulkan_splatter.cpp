@@ -4,9 +4,12 @@
 #include "overlay/vulkan_splatter.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstddef>
 #include <cstring>
 #include <vector>
+
+#include <glm/gtc/type_ptr.hpp>
 
 #include "base/parallel.h"
 #include "camera/lens_uniform.h"
@@ -80,7 +83,7 @@ SplatRunBlock blockOf(const SplatRun& run, std::uint32_t firstPoint, SplatPayloa
           {v.m[6], v.m[7], v.m[8], v.t[2]},
           {v.sizeTimesDepth, v.smallest, v.onePixel ? 0.0f : v.largest, v.round ? 1.0f : 0.0f},
           {v.cellLow[0], v.cellLow[1], v.cellLow[2], v.cellShift},
-          {base, v.cellNormals ? firstNormal : kNone, 0, 0}};
+          {base, v.cellNormals ? firstNormal : kNone, std::bit_cast<std::uint32_t>(v.sizeLess), 0}};
 }
 
 class VulkanSplatter final : public SplatDevice {
@@ -162,8 +165,7 @@ Result<void> VulkanSplatter::upload(const Batch& batch, SplatPayload payload) {
     const SplatRun& run = *batch.runs[r];
     runs.push_back(blockOf(run, batch.firstPoint[r], payload, static_cast<std::uint32_t>(normals.size())));
     for (std::size_t i = 0; i < normalsOf(run); ++i)
-      normals.emplace_back(run.view.cellNormals[3 * i], run.view.cellNormals[3 * i + 1],
-                           run.view.cellNormals[3 * i + 2], 0.0f);
+      normals.push_back(glm::make_vec4(run.view.cellNormals + 4 * i));
     for (std::uint32_t place = 0; place < batch.pointCount[r]; place += kChunk)
       chunks.emplace_back(r, points + place, std::min(kChunk, batch.pointCount[r] - place), place);
     at.push_back(points);

@@ -10,6 +10,7 @@
 
 #include "base/parallel.h"
 #include "raster/mesh_pass.h"
+#include "raster/splat_merge.h"
 #include "raster/splat_pass.h"
 #include "raster/surface_fill.h"
 
@@ -63,15 +64,18 @@ DotImage drawDots(const std::vector<SplatLayer>& layers, const Camera& camera,
     }
   }
   DotImage dots(camera.width(), camera.height());
-  const auto merge = [&](const SplatPlanes<std::uint64_t>& planes, std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-      const std::uint64_t pixel = planes.nearest(i);
-      const float z = std::bit_cast<float>(static_cast<std::uint32_t>(pixel >> 32));
-      if (!(z > 0.0f)) continue;
-      dots.inverseDepth.data()[i] = 1.0f / z;
-      const auto payload = static_cast<std::uint32_t>(pixel);
-      dots.spacingPx.data()[i] = decodedSpacing(payload) / z;
-      dots.place.data()[i] = static_cast<std::uint16_t>(payload & ((1u << PlaceInPixel::kBits) - 1));
+  const auto merge = [&](const SplatPlanes<std::uint64_t>& planes, int first, int last) {
+    MergedRows<std::uint64_t> rows(planes, camera.width(), camera.height(), false);
+    for (int y = first; y < last; ++y) {
+      const std::uint64_t* pixels = rows.row(y);
+      for (int x = 0; x < camera.width(); ++x) {
+        const float z = std::bit_cast<float>(static_cast<std::uint32_t>(pixels[x] >> 32));
+        if (!(z > 0.0f)) continue;
+        dots.inverseDepth.at(x, y) = 1.0f / z;
+        const auto payload = static_cast<std::uint32_t>(pixels[x]);
+        dots.spacingPx.at(x, y) = decodedSpacing(payload) / z;
+        dots.place.at(x, y) = static_cast<std::uint16_t>(payload & ((1u << PlaceInPixel::kBits) - 1));
+      }
     }
   };
   drawRuns(runs, camera.width(), camera.height(), SplatPayload::Place, {}, merge);

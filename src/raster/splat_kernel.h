@@ -25,9 +25,9 @@ struct SplatView {
   const void* camera;
   bool (*inDomain)(const void* camera, float x, float y);
   int width, height;
-  /// Footprint in pixels: clamp(sizeTimesDepth / z, smallest, largest).
-  float sizeTimesDepth, smallest, largest;
-  /// Three floats a cell as CellNormals has them, with its cells' first step and size; null: footprints face
+  /// Footprint in pixels: clamp(sizeTimesDepth / z - sizeLess, smallest, largest).
+  float sizeTimesDepth, sizeLess, smallest, largest;
+  /// Four floats a cell as CellNormals has them, with its cells' first step and size; null: footprints face
   /// the eye.
   const float* cellNormals;
   std::int32_t cellLow[3], cellShift;

@@ -167,105 +167,10 @@ ALIDADE_LENS_INLINE Words placeInPixel(const Floats& u, const Floats& v, const I
 
 #include "raster/splat_queue.h"
 
+#include "raster/splat_footprint.h"
+
 namespace alidade {
 namespace {
-
-/// A footprint's inverse depth over the picture: linear there, as a plane's is but for what the lens bends it
-/// within a few pixels. It ends where its depth leaves the point's by more than half its width in the world,
-/// so that a surface seen at a grazing angle is not fattened; its middle pixel stays.
-struct Tilt {
-  float inverse = 0, alongU = 0, alongV = 0;
-  float least = 0, most = 0;
-  bool flat = true;  ///< of one depth
-};
-
-/// The plane through a point with normal n, n·P = d: 1/z = n·(x, y, 1) / d over undistorted x, y. `du`, `dv`:
-/// how u and v change with x and with y.
-ALIDADE_LENS_INLINE Tilt tiltOf(const SplatView& view, const float* normal, float x, float y, float z,
-                                float size, const float* du, const float* dv) {
-  Tilt tilt;
-  const float facing = normal[0] * x + normal[1] * y + normal[2];
-  const float determinant = du[0] * dv[1] - du[1] * dv[0];
-  // Without a normal, or seen along the surface, there is no plane to follow.
-  if (!(std::fabs(facing) > 1e-3f) || !(std::fabs(determinant) > 1e-6f)) return tilt;
-  tilt.inverse = 1.0f / z;
-  const float scale = tilt.inverse / (facing * determinant);
-  tilt.alongU = (normal[0] * dv[1] - normal[1] * dv[0]) * scale;
-  tilt.alongV = (normal[1] * du[0] - normal[0] * du[1]) * scale;
-  const float halfWidth = 0.5f * size / view.fx;  // of the depth
-  tilt.least = tilt.inverse / (1.0f + halfWidth);
-  tilt.most = halfWidth < 0.9f ? tilt.inverse / (1.0f - halfWidth) : 10.0f * tilt.inverse;
-  tilt.flat = false;
-  return tilt;
-}
-
-/// The pixels whose centres lie within `size` of the point: a square, or a disc within it.
-template <bool packed>
-void drawFootprint(const SplatView& view, float u, float v, float size, float z, const Tilt& tilt,
-                   std::uint32_t payload, const SplatTarget& target) {
-  const float half = 0.5f * size;
-  const int left = static_cast<int>(std::floor(u - half)) + 1, right = static_cast<int>(std::floor(u + half));
-  const int top = static_cast<int>(std::floor(v - half)) + 1, bottom = static_cast<int>(std::floor(v + half));
-  const int x0 = left < 0 ? 0 : left, x1 = right < view.width ? right : view.width - 1;
-  const int y0 = top < 0 ? 0 : top, y1 = bottom < view.height ? bottom : view.height - 1;
-  const int middleX = static_cast<int>(std::floor(u + 0.5f)),
-            middleY = static_cast<int>(std::floor(v + 0.5f));
-  // A disc of two pixels and less is its square, else it could miss every centre.
-  const float radiusSquared = view.round && size > 2.0f ? half * half : size * size;
-  for (int y = y0; y <= y1; ++y) {
-    const float dy = static_cast<float>(y) - v;
-    for (int x = x0; x <= x1; ++x) {
-      const float dx = static_cast<float>(x) - u;
-      if (dx * dx + dy * dy > radiusSquared) continue;
-      float depth = z;
-      if (!tilt.flat) {
-        float inverse = tilt.inverse + (tilt.alongU * dx + tilt.alongV * dy);
-        const bool beyond = inverse < tilt.least || inverse > tilt.most;
-        if (beyond && (x != middleX || y != middleY)) continue;
-        inverse = inverse < tilt.least ? tilt.least : inverse > tilt.most ? tilt.most : inverse;
-        depth = 1.0f / inverse;
-      }
-      std::uint32_t bits;
-      std::memcpy(&bits, &depth, sizeof bits);
-      put<packed>(target, static_cast<std::size_t>(y) * view.width + x, bits, payload);
-    }
-  }
-}
-
-template <LensKind kind, bool packed>
-ALIDADE_LENS_INLINE void drawFootprints(const SplatView& view, const Projected& p, const SplatTarget& target,
-                                        std::uint32_t place) {
-  const Floats zero = {};
-  const Floats wanted = view.sizeTimesDepth / p.z;
-  const Floats atMost = wanted < view.largest ? wanted : (zero + view.largest);
-  const Floats size = atMost > view.smallest ? atMost : (zero + view.smallest);
-  const Floats half = 0.5f * size;
-  const Ints reaches = p.valid & (p.u + half > -0.5f) & (p.u - half < view.width - 0.5f) &
-                       (p.v + half > -0.5f) & (p.v - half < view.height - 0.5f);
-  const Words payload = payloadOf(target, place, p.colour);
-  // How the lens moves a pixel for a small step in x and in y; larger far out, where a fisheye squeezes it.
-  Floats ux = zero, vx = zero, uy = zero, vy = zero;
-  if (view.cellNormals) {
-    const Floats step = 0.01f * (1.0f + (p.x * p.x + p.y * p.y));
-    const Floats perStep = 1.0f / step;
-    Floats xd, yd;
-    distort<kind>(view.lens, Floats(p.x + step), p.y, xd, yd);
-    ux = (view.fx * xd + view.cx - p.u) * perStep;
-    vx = (view.fy * yd + view.cy - p.v) * perStep;
-    distort<kind>(view.lens, p.x, Floats(p.y + step), xd, yd);
-    uy = (view.fx * xd + view.cx - p.u) * perStep;
-    vy = (view.fy * yd + view.cy - p.v) * perStep;
-  }
-  for (int i = 0; i < kLanes; ++i) {
-    if (!reaches[i]) continue;
-    Tilt tilt;
-    if (view.cellNormals && size[i] > 1.0f) {
-      const float du[2] = {ux[i], uy[i]}, dv[2] = {vx[i], vy[i]};
-      tilt = tiltOf(view, view.cellNormals + 3 * p.cell[i], p.x[i], p.y[i], p.z[i], size[i], du, dv);
-    }
-    drawFootprint<packed>(view, p.u[i], p.v[i], size[i], p.z[i], tilt, payload[i], target);
-  }
-}
 
 template <LensKind kind, bool packed, bool onePixel>
 void drawRun(const SplatView& view, const std::uint16_t* points, std::uint32_t count,
@@ -275,7 +180,7 @@ void drawRun(const SplatView& view, const std::uint16_t* points, std::uint32_t c
     if constexpr (onePixel) {
       drawPixels<packed>(view, p, queue, target, place);
     } else {
-      drawFootprints<kind, packed>(view, p, target, place);
+      drawFootprints<kind, packed>(view, p, queue, target, place);
     }
   };
   std::uint32_t place = 0;

@@ -12,6 +12,10 @@
 #include <numbers>
 #include <utility>
 
+#if defined(__linux__)
+#include <sys/mman.h>
+#endif
+
 #include "base/log.h"
 #include "base/parallel.h"
 
@@ -19,9 +23,13 @@ namespace alidade {
 
 namespace {
 
-constexpr std::size_t kAlignment = 128;
+constexpr std::size_t kHugePage = std::size_t{2} << 20;
+constexpr std::size_t kAlignment = kHugePage;
+/// Squares as wide as the points of a surface are apart on average would leave a third of it bare where they lie at random,
+/// so they are wider by this; one pixel as long as that is how far apart they are (closeHoles fills in).
+constexpr double kCover = 1.5;
 constexpr std::uint32_t kPointsPerTask = 16384;
-constexpr std::size_t kPixelsPerBand = 1 << 16;
+constexpr std::size_t kRowsPerBand = 64;
 
 /// Blocks of past frames, a few of them; two frames of one size need no allocation.
 class ScratchPool {
@@ -42,7 +50,12 @@ class ScratchPool {
         return data;
       }
     }
-    return ::operator new(bytes, std::align_val_t(kAlignment));
+    void* data = ::operator new(bytes, std::align_val_t(kAlignment));
+#if defined(__linux__)
+    // Points fall all over a plane: with small pages most of them would miss the table of pages, too.
+    if (bytes >= kHugePage) ::madvise(data, bytes / kHugePage * kHugePage, MADV_HUGEPAGE);
+#endif
+    return data;
   }
 
   void giveBack(void* data, std::size_t bytes) {
@@ -102,7 +115,7 @@ const void* drawOnDevice(SplatDevice* device, std::span<const SplatRun> runs, in
 template <class Pixel>
 void drawPlanes(std::span<const SplatRun> runs, int width, int height, SplatPayload payload,
                 SplatDevice* device,
-                const std::function<void(const SplatPlanes<Pixel>&, std::size_t, std::size_t)>& merge) {
+                const std::function<void(const SplatPlanes<Pixel>&, int, int)>& merge) {
   const SplatKernel& kernel = splatKernel();
   const std::size_t pixels = static_cast<std::size_t>(width) * height;
   const std::size_t bytes = pixels * sizeof(Pixel);
@@ -132,8 +145,9 @@ void drawPlanes(std::span<const SplatRun> runs, int width, int height, SplatPayl
   for (const auto& block : scratch) {
     if (block) planes.planes.push_back(static_cast<const Pixel*>(block->data()));
   }
-  parallelFor(pixels, kPixelsPerBand,
-              [&](std::size_t first, std::size_t last, int) { merge(planes, first, last); });
+  parallelFor(static_cast<std::size_t>(height), kRowsPerBand, [&](std::size_t first, std::size_t last, int) {
+    merge(planes, static_cast<int>(first), static_cast<int>(last));
+  });
 }
 
 bool inDomain(const void* camera, float x, float y) {
@@ -286,11 +300,14 @@ SplatRun makeRun(const PointStore& store, const SelectedRange& range, const Rigi
   if (base.reciprocal == Reciprocal::MultiplyAdd)
     chooseReciprocal(run.view, node.bounds, cameraFromWorld, options.reciprocalErrorPx);
   const double focal = std::sqrt(std::abs(static_cast<double>(base.fx) * base.fy));
-  const double width = options.worldSizeM > 0 ? options.worldSizeM : range.spacing;
+  const bool isAutomatic = !options.fixedSize && !(options.worldSizeM > 0);
+  const double width = isAutomatic ? kCover * range.spacing : options.worldSizeM;
   const double sizeTimesDepth = options.fixedSize ? 0.0 : options.pointSize * width * focal;
+  run.spacing = isAutomatic ? range.spacing / node.step : 0.0;
   run.view.sizeTimesDepth = static_cast<float>(sizeTimesDepth);
+  run.view.sizeLess = isAutomatic ? static_cast<float>(kCover - 1.0) : 0.0f;
   const double nearest = nearestDepth(node.bounds, cameraFromWorld);
-  run.view.onePixel = base.largest <= 1.0f || (base.smallest <= 1.0f && sizeTimesDepth <= nearest);
+  run.view.onePixel = base.largest <= 1.0f || (base.smallest <= 1.0f && sizeTimesDepth <= (1.0 + run.view.sizeLess) * nearest);
   return run;
 }
 
@@ -303,7 +320,7 @@ std::vector<CellNormals> layFootprints(std::span<SplatRun> runs, const RigidTran
   parallelFor(wide.size(), 1, [&](std::size_t first, std::size_t last, int) {
     for (std::size_t i = first; i < last; ++i) {
       SplatView& view = wide[i]->view;
-      normals[i] = cellNormals({wide[i]->points, wide[i]->count}, rotation);
+      normals[i] = cellNormals({wide[i]->points, wide[i]->count}, wide[i]->spacing, rotation);
       view.cellNormals = &normals[i].normal[0].x;
       std::copy(normals[i].low.begin(), normals[i].low.end(), view.cellLow);
       view.cellShift = normals[i].shift;
@@ -314,8 +331,8 @@ std::vector<CellNormals> layFootprints(std::span<SplatRun> runs, const RigidTran
 
 void drawRuns(
     std::span<const SplatRun> runs, int width, int height, SplatPayload payload,
-    const std::function<void(const SplatPlanes<std::uint32_t>&, std::size_t, std::size_t)>& mergeDepth,
-    const std::function<void(const SplatPlanes<std::uint64_t>&, std::size_t, std::size_t)>& mergePacked,
+    const std::function<void(const SplatPlanes<std::uint32_t>&, int, int)>& mergeDepth,
+    const std::function<void(const SplatPlanes<std::uint64_t>&, int, int)>& mergePacked,
     SplatDevice* device) {
   if (payload == SplatPayload::None) {
     drawPlanes<std::uint32_t>(runs, width, height, payload, device, mergeDepth);

@@ -39,6 +39,7 @@ struct SplatRun {
   const DisplayPoint* points = nullptr;
   std::uint32_t count = 0;
   std::uint32_t payloadBase = 0;
+  double spacing = 0;  ///< that its footprints follow, node steps; 0: they are of one size in the world or on screen
   SplatView view;
 };
 
@@ -47,12 +48,6 @@ struct SplatRun {
 template <class Pixel>
 struct SplatPlanes {
   std::vector<const Pixel*> planes;
-
-  Pixel nearest(std::size_t pixel) const {
-    Pixel value = static_cast<Pixel>(-1);
-    for (const Pixel* plane : planes) value = plane[pixel] < value ? plane[pixel] : value;
-    return value;
-  }
 };
 
 /// Smallest depth that a point of the box can have, metres; 0 where the box reaches the eye's plane.
@@ -71,12 +66,12 @@ SplatRun makeRun(const PointStore& store, const SelectedRange& range, const Rigi
 std::vector<CellNormals> layFootprints(std::span<SplatRun> runs, const RigidTransform& cameraFromWorld);
 
 /// Draws the runs on all cores, one private plane a thread, then hands the planes to `merge` for
-/// bands of pixels [first, last), on all cores too. payload None draws 32-bit pixels and calls the
+/// bands of rows [first, last), on all cores too. payload None draws 32-bit pixels and calls the
 /// first; anything else 64-bit ones and the second. A device draws the runs that need no domain check.
 void drawRuns(
     std::span<const SplatRun> runs, int width, int height, SplatPayload payload,
-    const std::function<void(const SplatPlanes<std::uint32_t>&, std::size_t, std::size_t)>& mergeDepth,
-    const std::function<void(const SplatPlanes<std::uint64_t>&, std::size_t, std::size_t)>& mergePacked,
+    const std::function<void(const SplatPlanes<std::uint32_t>&, int, int)>& mergeDepth,
+    const std::function<void(const SplatPlanes<std::uint64_t>&, int, int)>& mergePacked,
     SplatDevice* device = nullptr);
 
 }  // namespace alidade

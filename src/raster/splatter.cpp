@@ -6,7 +6,15 @@
 #include <bit>
 #include <limits>
 
+#include "raster/splat_merge.h"
 #include "raster/splat_pass.h"
+
+// Loops of plain arithmetic, in the widest registers the processor has.
+#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
+#define ALIDADE_WIDEST __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
+#else
+#define ALIDADE_WIDEST
+#endif
 
 namespace alidade {
 
@@ -35,10 +43,28 @@ std::vector<LayerGroup> groupsOf(const std::vector<SplatLayer>& layers) {
   return groups;
 }
 
-Rgba8 colourOf(std::uint32_t rgb565) {
+/// RGB565 in full bytes, opaque; r in the lowest, as Rgba8 lies in memory.
+inline std::uint32_t colourOf(std::uint32_t rgb565) {
   const std::uint32_t r = rgb565 >> 11 & 31, g = rgb565 >> 5 & 63, b = rgb565 & 31;
-  return {static_cast<std::uint8_t>(r << 3 | r >> 2), static_cast<std::uint8_t>(g << 2 | g >> 4),
-          static_cast<std::uint8_t>(b << 3 | b >> 2), 255};
+  return 0xff000000u | (b << 3 | b >> 2) << 16 | (g << 2 | g >> 4) << 8 | (r << 3 | r >> 2);
+}
+static_assert(sizeof(Rgba8) == 4 && std::endian::native == std::endian::little);
+
+/// Takes what is nearer than the depth that is there.
+ALIDADE_WIDEST void takeColours(const std::uint64_t* pixels, std::size_t count, float* depth, std::uint32_t* colour) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto z = std::bit_cast<float>(static_cast<std::uint32_t>(pixels[i] >> 32));  // all ones is a NaN
+    const bool nearer = z < depth[i];
+    depth[i] = nearer ? z : depth[i];
+    colour[i] = nearer ? colourOf(static_cast<std::uint32_t>(pixels[i])) : colour[i];
+  }
+}
+
+ALIDADE_WIDEST void takeDepths(const std::uint32_t* pixels, std::size_t count, float* depth) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto z = std::bit_cast<float>(pixels[i]);
+    depth[i] = z < depth[i] ? z : depth[i];
+  }
 }
 
 /// Looks a group's point up again: for colour where ids were asked for as well.
@@ -77,6 +103,11 @@ std::vector<SplatRun> runsOf(const std::vector<SplatLayer>& layers, const LayerG
   return runs;
 }
 
+/// Points as wide as they are apart make a surface; smaller ones, and those of one fixed size, are wanted as points.
+bool closesHoles(const SplatOptions& options) {
+  return options.closeHoles && !options.fixedSize && options.maximumSizePx > 1.0 && options.pointSize >= 1.0;
+}
+
 void splatGroup(const std::vector<SplatLayer>& layers, const LayerGroup& group, const Camera& camera,
                 const RigidTransform& cameraFromWorld, const SplatOptions& options, SplatImages& images) {
   std::vector<SplatRun> runs = runsOf(layers, group, camera, cameraFromWorld, options);
@@ -87,26 +118,33 @@ void splatGroup(const std::vector<SplatLayer>& layers, const LayerGroup& group, 
   const SplatPayload payload = options.ids      ? SplatPayload::Index
                                : options.colour ? SplatPayload::Colour
                                                 : SplatPayload::None;
-  float* depth = images.depth.data();
-  const auto mergeDepth = [&](const SplatPlanes<std::uint32_t>& planes, std::size_t first, std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-      const float z = std::bit_cast<float>(planes.nearest(i));
-      if (z < depth[i]) depth[i] = z;
+  const int width = camera.width(), height = camera.height();
+  const auto rowSize = static_cast<std::size_t>(width);
+  const bool closeHoles = closesHoles(options);
+  const auto mergeDepth = [&](const SplatPlanes<std::uint32_t>& planes, int first, int last) {
+    MergedRows<std::uint32_t> rows(planes, width, height, closeHoles);
+    for (int y = first; y < last; ++y) takeDepths(rows.row(y), rowSize, images.depth.row(y));
+  };
+  const auto takeIds = [&](const std::uint64_t* pixels, int y) {
+    float* depth = images.depth.row(y);
+    for (int x = 0; x < width; ++x) {
+      const float z = std::bit_cast<float>(static_cast<std::uint32_t>(pixels[x] >> 32));
+      if (!(z < depth[x])) continue;  // all ones is a NaN
+      depth[x] = z;
+      const auto index = static_cast<std::uint32_t>(pixels[x]);
+      images.point.at(x, y) = 1 + group.pointsBefore + index;
+      if (options.colour) images.colour.at(x, y) = std::bit_cast<Rgba8>(colourOf(points.colour(index)));
     }
   };
-  const auto mergePacked = [&](const SplatPlanes<std::uint64_t>& planes, std::size_t first,
-                               std::size_t last) {
-    for (std::size_t i = first; i < last; ++i) {
-      const std::uint64_t pixel = planes.nearest(i);
-      const float z = std::bit_cast<float>(static_cast<std::uint32_t>(pixel >> 32));
-      if (!(z < depth[i])) continue;  // all ones is a NaN
-      depth[i] = z;
-      const auto value = static_cast<std::uint32_t>(pixel);
-      if (options.ids) images.point.data()[i] = 1 + group.pointsBefore + value;
-      if (options.colour) images.colour.data()[i] = colourOf(options.ids ? points.colour(value) : value);
+  const auto mergePacked = [&](const SplatPlanes<std::uint64_t>& planes, int first, int last) {
+    MergedRows<std::uint64_t> rows(planes, width, height, closeHoles);
+    for (int y = first; y < last; ++y) {
+      const std::uint64_t* pixels = rows.row(y);
+      if (options.ids) takeIds(pixels, y);
+      else takeColours(pixels, rowSize, images.depth.row(y), reinterpret_cast<std::uint32_t*>(images.colour.row(y)));
     }
   };
-  drawRuns(runs, camera.width(), camera.height(), payload, mergeDepth, mergePacked, options.device);
+  drawRuns(runs, width, height, payload, mergeDepth, mergePacked, options.device);
 }
 
 }  // namespace

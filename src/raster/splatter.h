@@ -27,14 +27,19 @@ class SplatDevice;
 struct SplatOptions {
   bool colour = false;     ///< fill SplatImages::colour
   bool ids = false;        ///< fill SplatImages::point
-  double pointSize = 1.0;  ///< user's factor on the automatic footprint
+  /// User's factor on the automatic footprint, which is as wide as it takes to close the surface: 1.5 s - 0.5 pixels where
+  /// points are s pixels apart, at least one.
+  double pointSize = 1.0;
   double minimumSizePx = 1.0;
-  double maximumSizePx = 16.0;
+  double maximumSizePx = 32.0;
   bool round = false;
   /// Footprints lie in the surface's plane where the points of a node show one: 1/z linear over the
   /// footprint, foreshortened along it. Otherwise, and for fixedSize, they face the eye at their point's
   /// depth.
   bool planar = true;
+  /// Pixels that the points of a surface missed are closed, see raster/splat_merge.h; not where points are drawn smaller
+  /// than they are apart, at one pixel or at a fixed size.
+  bool closeHoles = true;
   /// Every point this wide in the world, metres, before `pointSize`: Zhang (2020), whose s n r H / (z
   /// tan(fov/2)) is s w f / z with w = n r H / (f tan(fov/2)). 0: as wide as its neighbours are apart.
   double worldSizeM = 0;

@@ -242,16 +242,18 @@ int coveredWidth(const SplatImages& images, int row) {
 }
 
 TEST(Splatter, FootprintsFollowSpacingOverDepth) {
-  // size = spacing f / z: 0.1 m at 2 m is 5 pixels.
-  EXPECT_EQ(coveredWidth(onePoint({}, 0.1), 50), 5);
-  EXPECT_EQ(coveredWidth(onePoint({.pointSize = 2.0}, 0.1), 50), 10);
+  // 0.1 m at 2 m is s = 5 pixels, the footprint 1.5 s - 0.5 = 7.
+  EXPECT_EQ(coveredWidth(onePoint({}, 0.1), 50), 7);
+  EXPECT_EQ(coveredWidth(onePoint({.pointSize = 2.0}, 0.1), 50), 15);  // 14.5: centres at -7..7
+  EXPECT_EQ(coveredWidth(onePoint({}, 0.02), 50), 1);
   EXPECT_EQ(coveredWidth(onePoint({}, 0.001), 50), 1);
   EXPECT_EQ(coveredWidth(onePoint({.maximumSizePx = 3}, 0.1), 50), 3);
   EXPECT_EQ(coveredWidth(onePoint({.minimumSizePx = 4}, 0.001), 50), 4);
   EXPECT_EQ(coveredWidth(onePoint({.pointSize = 3, .fixedSize = true}, 0.1), 50), 3);
+  // A's width in the world is taken as it is.
   EXPECT_EQ(coveredWidth(onePoint({.worldSizeM = 0.1}, 0.001), 50), 5);
   EXPECT_EQ(coveredWidth(onePoint({.pointSize = 2.0, .worldSizeM = 0.1}, 0.3), 50), 10);
-  const SplatImages disc = onePoint({.round = true}, 0.18);
+  const SplatImages disc = onePoint({.round = true}, 0.38 / 3);  // 9 pixels
   EXPECT_EQ(coveredWidth(disc, 50), 9);
   EXPECT_EQ(coveredWidth(disc, 46), 5);  // 2 sqrt(4.5² - 4²) = 4.1: centres at -2..2
 }
