@@ -38,18 +38,17 @@ void drawPixel(vec2 at, float z, uint payload) {
   put(uint(pixel.y) * frame.x + uint(pixel.x), z, payload);
 }
 
-// Inverse depth, then how it changes along u and along v; 0 where the footprint is of one depth.
-vec3 tiltOf(vec3 normal, vec2 xy, vec2 at, float z) {
+// How many times its inverse depth a footprint gains along u and along v, a pixel; false where it is of one depth.
+bool tiltOf(vec3 normal, vec2 xy, vec2 at, out vec2 along) {
   float step = 0.01 * (1.0 + (xy.x * xy.x + xy.y * xy.y));
   vec2 alongX = (pixelOfDistorted(distortPoint(xy + vec2(step, 0.0), lens), lens) - at) * (1.0 / step);
   vec2 alongY = (pixelOfDistorted(distortPoint(xy + vec2(0.0, step), lens), lens) - at) * (1.0 / step);
   float facing = normal.x * xy.x + normal.y * xy.y + normal.z;
   float determinant = alongX.x * alongY.y - alongY.x * alongX.y;
-  if (!(abs(facing) > 1e-3) || !(abs(determinant) > 1e-6)) return vec3(0.0);
-  float inverse = 1.0 / z;
-  float scale = inverse / (facing * determinant);
-  return vec3(inverse, (normal.x * alongY.y - normal.y * alongX.y) * scale,
-              (normal.y * alongX.x - normal.x * alongY.x) * scale);
+  if (!(abs(facing) > 1e-3) || !(abs(determinant) > 1e-6)) return false;
+  float scale = 1.0 / (facing * determinant);
+  along = vec2(normal.x * alongY.y - normal.y * alongX.y, normal.y * alongX.x - normal.x * alongY.x) * scale;
+  return true;
 }
 
 vec4 surfaceAt(Run run, uvec3 steps) {
@@ -60,16 +59,16 @@ vec4 surfaceAt(Run run, uvec3 steps) {
 
 void drawFootprint(Run run, uvec3 steps, vec2 xy, vec2 at, float z, uint payload) {
   vec4 surface = surfaceAt(run, steps);
-  precise float size = max(min(run.size.x * surface.w / z - uintBitsToFloat(run.what.z), run.size.z), run.size.y);
+  precise float size = max(min(run.size.x * surface.w * (1.0 / z) - uintBitsToFloat(run.what.z), run.size.z), run.size.y);
   float halfSize = 0.5 * size;
   vec2 extent = vec2(frame.xy);
   if (!(at.x + halfSize > -0.5 && at.x - halfSize < extent.x - 0.5 && at.y + halfSize > -0.5 &&
         at.y - halfSize < extent.y - 0.5)) return;
-  vec3 tilt = size > 1.0 ? tiltOf(surface.xyz, xy, at, z) : vec3(0.0);
-  float bend = 0.0005 * tilt.x / (size * size);
-  float halfWidth = 0.5 * size / lens.focal.x;
-  float least = tilt.x / (1.0 + halfWidth);
-  float most = halfWidth < 0.9 ? tilt.x / (1.0 - halfWidth) : 10.0 * tilt.x;
+  vec2 along = vec2(0.0);
+  bool isTilted = size > 1.0 && tiltOf(surface.xyz, xy, at, along);
+  float bend = 0.0005 / (size * size);
+  float h = min(size * (0.5 / lens.focal.x), 0.3);
+  float least = h * (h - 1.0), most = h * (h + 1.0);
   ivec2 first = max(ivec2(floor(at - halfSize)) + 1, ivec2(0));
   ivec2 last = min(ivec2(floor(at + halfSize)), ivec2(frame.xy) - 1);
   ivec2 middle = ivec2(floor(at + 0.5));
@@ -79,11 +78,11 @@ void drawFootprint(Run run, uvec3 steps, vec2 xy, vec2 at, float z, uint payload
       vec2 off = vec2(x, y) - at;
       if (off.x * off.x + off.y * off.y > radiusSquared) continue;
       float depth = z;
-      if (tilt.x > 0.0) {
-        float inverse = tilt.x + (tilt.y * off.x + tilt.z * off.y) - bend * (off.x * off.x + off.y * off.y);
-        bool beyond = inverse < least || inverse > most;
-        if (beyond && ivec2(x, y) != middle) continue;
-        depth = 1.0 / clamp(inverse, least, most);
+      if (isTilted) {
+        float free = (along.x * off.x + along.y * off.y) - bend * (off.x * off.x + off.y * off.y);
+        if ((free < least || free > most) && ivec2(x, y) != middle) continue;
+        float t = clamp(free, least, most);
+        depth = z * ((1.0 - t) * (1.0 + t * t));
       }
       put(uint(y) * frame.x + uint(x), depth, payload);
     }

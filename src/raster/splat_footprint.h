@@ -14,18 +14,17 @@ constexpr float kBend = 0.0005f;
 /// Wider footprints are drawn row by row.
 constexpr float kSideBySide = 4.0f;
 
-/// A footprint's inverse depth over the picture: linear there, as a plane's is but for what the lens bends it
-/// within a few pixels. It ends where its depth leaves the point's by more than half its width in the world,
-/// so that a surface seen at a grazing angle is not fattened; its middle pixel stays. It bends away from the eye a
-/// little towards its border, so that of neighbours in one plane each has the pixels nearest to it.
+/// A footprint's depth over the picture: 1 + t is how many times its point's inverse depth it has there, and t is linear, as a
+/// plane's is but for what the lens bends it within a few pixels. It ends where its depth leaves the point's by more than
+/// half its width in the world, so that a surface seen at a grazing angle is not fattened; its middle pixel stays. It bends
+/// away from the eye a little towards its border, so that of neighbours in one plane each has the pixels nearest to it.
 ///
 /// T: Floats for a lane each, float for one.
 template <class T>
 struct Tilt {
-  T inverse, alongU, alongV;
-  T bend;                   ///< inverse depth lost with the squared distance from the point, a pixel²
-  T least, most;            ///< inverse depths at its ends
-  T farthest, nearest;      ///< depths there
+  T alongU, alongV;  ///< of t, a pixel
+  T bend;            ///< that t loses with the squared distance from the point, a pixel²
+  T least, most;     ///< of t
 };
 
 /// The pixels whose centres lie within `size` of each point: a square, or a disc within it.
@@ -68,27 +67,26 @@ ALIDADE_LENS_INLINE void layOnSurface(const SplatView& view, const Projected& p,
   const Floats facing = nx * p.x + ny * p.y + nz;
   const Floats determinant = ux * vy - uy * vx;
   f.flat = ~((size > 1.0f) & ((facing > 1e-3f) | (facing < -1e-3f)) & ((determinant > 1e-6f) | (determinant < -1e-6f)));
-  f.tilt.inverse = 1.0f / p.z;
-  const Floats scale = f.tilt.inverse / (facing * determinant);
+  const Floats scale = 1.0f / (facing * determinant);
   f.tilt.alongU = (nx * vy - ny * vx) * scale;
   f.tilt.alongV = (ny * ux - nx * uy) * scale;
-  f.tilt.bend = kBend * f.tilt.inverse / (size * size);
-  const Floats halfWidth = 0.5f * size / view.fx;  // of the depth
-  f.tilt.least = f.tilt.inverse / (1.0f + halfWidth);
-  f.tilt.most = halfWidth < 0.9f ? f.tilt.inverse / (1.0f - halfWidth) : 10.0f * f.tilt.inverse;
-  f.tilt.farthest = 1.0f / f.tilt.least;
-  f.tilt.nearest = 1.0f / f.tilt.most;
+  f.tilt.bend = kBend / (size * size);
+  // Half its width as a part of the depth, h: t from 1 / (1 + h) - 1 to 1 / (1 - h) - 1, but for cubes.
+  const Floats wide = size * (0.5f / view.fx), h = wide < 0.3f ? wide : Floats{} + 0.3f;
+  f.tilt.least = h * (h - 1.0f);
+  f.tilt.most = h * (h + 1.0f);
 }
 
-/// The depth of one pixel of each footprint, `dx`, `dy` from its point; false where it has none there.
+/// The depth of one pixel of each footprint; false where it has none there. z / (1 + t), without its fourth power and
+/// what is smaller: no division, which would take most of the time.
 template <class T, class Mask>
-ALIDADE_LENS_INLINE Mask depthAt(const Tilt<T>& tilt, const Floats& alongRow, const Floats& alongColumn,
+ALIDADE_LENS_INLINE Mask depthAt(const Tilt<T>& tilt, const Floats& z, const Floats& alongRow, const Floats& alongColumn,
                                  const Floats& squaredDistance, const Mask& middle, Floats& depth) {
-  const Floats inverse = tilt.inverse + (alongRow + alongColumn) - tilt.bend * squaredDistance;
-  const Mask near = inverse > tilt.most, far = inverse < tilt.least;
-  depth = 1.0f / inverse;
-  depth = far ? Floats{} + tilt.farthest : depth;
-  depth = near ? Floats{} + tilt.nearest : depth;
+  const Floats free = (alongRow + alongColumn) - tilt.bend * squaredDistance;
+  const Mask near = free > tilt.most, far = free < tilt.least;
+  Floats t = near ? Floats{} + tilt.most : free;
+  t = far ? Floats{} + tilt.least : t;
+  depth = z * ((1.0f - t) * (1.0f + t * t));
   return ~(near | far) | middle;
 }
 
@@ -112,7 +110,7 @@ ALIDADE_LENS_INLINE void drawSideBySide(const SplatView& view, const Projected& 
       if (!allFlat) {
         Floats tilted;
         const Ints isMiddle = (x == f.middleX) & (y == f.middleY);
-        inside &= depthAt(f.tilt, Floats(f.tilt.alongU * dx), Floats(f.tilt.alongV * dy), squaredDistance, isMiddle,
+        inside &= depthAt(f.tilt, p.z, Floats(f.tilt.alongU * dx), Floats(f.tilt.alongV * dy), squaredDistance, isMiddle,
                                   tilted) | f.flat;
         depth = f.flat ? p.z : tilted;
       }
@@ -155,8 +153,8 @@ ALIDADE_LENS_INLINE void drawRows(const SplatView& view, const Projected& p, con
   const int left = f.left[lane], top = f.top[lane], columns = f.columns[lane], rows = f.rows[lane];
   const int middleX = f.middleX[lane], middleY = f.middleY[lane];
   const bool flat = f.flat[lane] != 0;
-  const Tilt<float> tilt{f.tilt.inverse[lane], f.tilt.alongU[lane], f.tilt.alongV[lane], f.tilt.bend[lane], f.tilt.least[lane],
-                         f.tilt.most[lane],    f.tilt.farthest[lane], f.tilt.nearest[lane]};
+  const Tilt<float> tilt{f.tilt.alongU[lane], f.tilt.alongV[lane], f.tilt.bend[lane], f.tilt.least[lane], f.tilt.most[lane]};
+  const Floats z = Floats{} + p.z[lane];
   for (int first = 0; first < columns; first += kLanes) {
     const Ints column = reinterpret_cast<Ints>(kIota) + first;
     const Ints x = column + left, inColumns = column < columns, isMiddleX = x == middleX;
@@ -167,8 +165,8 @@ ALIDADE_LENS_INLINE void drawRows(const SplatView& view, const Projected& p, con
       const Floats dy = Floats{} + (static_cast<float>(y) - v);
       const Floats squaredDistance = dx * dx + dy * dy;
       Ints inside = inColumns & ~(squaredDistance > radiusSquared);
-      Floats depth = Floats{} + p.z[lane];
-      if (!flat) inside &= depthAt(tilt, alongRow, Floats(tilt.alongV * dy), squaredDistance, Ints(y == middleY ? isMiddleX : Ints{}), depth);
+      Floats depth = z;
+      if (!flat) inside &= depthAt(tilt, z, alongRow, Floats(tilt.alongV * dy), squaredDistance, Ints(y == middleY ? isMiddleX : Ints{}), depth);
       putRow<packed>(target, at, lanesOf(inside), reinterpret_cast<Words>(depth), payload);
     }
   }
@@ -180,7 +178,7 @@ ALIDADE_LENS_INLINE void drawFootprints(const SplatView& view, const Projected& 
   const Floats zero = {};
   Floats widening = zero + 1.0f;
   if (view.cellNormals) widening = gatherFloats(view.cellNormals + 3, Ints(4 * p.cell));
-  const Floats wanted = view.sizeTimesDepth * widening / p.z - view.sizeLess;
+  const Floats wanted = view.sizeTimesDepth * widening * p.inverse - view.sizeLess;
   const Floats atMost = wanted < view.largest ? wanted : (zero + view.largest);
   const Floats size = atMost > view.smallest ? atMost : (zero + view.smallest);
   const Floats half = 0.5f * size;

@@ -37,6 +37,7 @@ constexpr Words kIota = {0, 1, 2, 3};
 
 struct Projected {
   Floats u, v, z;
+  Floats inverse;  ///< 1/z
   Ints valid;  ///< all ones where the lens holds and z > 0
   Words colour;
   Floats x, y;  ///< before the lens
@@ -109,6 +110,7 @@ ALIDADE_LENS_INLINE Projected project(const SplatView& view, const std::uint16_t
   p.u = view.fx * xd + view.cx;
   p.v = view.fy * yd + view.cy;
   p.z = pz;
+  p.inverse = inverse;
   // NaN fails each comparison, so a point that goes wrong anywhere is left out.
   const Floats r2 = x * x + y * y;
   p.valid = (pz > 1e-6f) & (r2 <= view.foldBackSquared);
