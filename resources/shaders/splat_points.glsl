@@ -79,10 +79,10 @@ void drawFootprint(Run run, uvec3 steps, vec2 xy, vec2 at, float z, uint payload
       if (off.x * off.x + off.y * off.y > radiusSquared) continue;
       float depth = z;
       if (isTilted) {
-        float free = (along.x * off.x + along.y * off.y) - bend * (off.x * off.x + off.y * off.y);
+        float free = off.x * (along.x - bend * off.x) + off.y * (along.y - bend * off.y);
         if ((free < least || free > most) && ivec2(x, y) != middle) continue;
         float t = clamp(free, least, most);
-        depth = z * ((1.0 - t) * (1.0 + t * t));
+        depth = z * (1.0 - t * (1.0 - t));
       }
       put(uint(y) * frame.x + uint(x), depth, payload);
     }

@@ -12,7 +12,7 @@ namespace {
 /// How much a footprint bends, as a part of its depth at its own width from the point.
 constexpr float kBend = 0.0005f;
 /// Wider footprints are drawn row by row.
-constexpr float kSideBySide = 4.0f;
+constexpr int kSideBySide = 4;
 
 /// A footprint's depth over the picture: 1 + t is how many times its point's inverse depth it has there, and t is linear, as a
 /// plane's is but for what the lens bends it within a few pixels. It ends where its depth leaves the point's by more than
@@ -48,6 +48,12 @@ ALIDADE_LENS_INLINE Floats gatherFloats(const float* from, const Ints& at) {
 #endif
 }
 
+/// Half its width as a part of the depth, in the tilt's own bounds.
+ALIDADE_LENS_INLINE Floats halfWidthOf(const SplatView& view, const Floats& size) {
+  const Floats half = size * (0.5f / view.fx);
+  return half < 0.3f ? half : Floats{} + 0.3f;
+}
+
 /// The plane through a point with normal n, n·P = d: 1/z = n·(x, y, 1) / d over undistorted x, y. Without a
 /// normal, or seen along the surface, there is no plane to follow.
 template <LensKind kind>
@@ -71,23 +77,31 @@ ALIDADE_LENS_INLINE void layOnSurface(const SplatView& view, const Projected& p,
   f.tilt.alongU = (nx * vy - ny * vx) * scale;
   f.tilt.alongV = (ny * ux - nx * uy) * scale;
   f.tilt.bend = kBend / (size * size);
-  // Half its width as a part of the depth, h: t from 1 / (1 + h) - 1 to 1 / (1 - h) - 1, but for cubes.
-  const Floats wide = size * (0.5f / view.fx), h = wide < 0.3f ? wide : Floats{} + 0.3f;
+  // t from 1 / (1 + h) - 1 to 1 / (1 - h) - 1, but for cubes.
+  const Floats h = halfWidthOf(view, size);
   f.tilt.least = h * (h - 1.0f);
   f.tilt.most = h * (h + 1.0f);
 }
 
-/// The depth of one pixel of each footprint; false where it has none there. z / (1 + t), without its fourth power and
-/// what is smaller: no division, which would take most of the time.
-template <class T, class Mask>
-ALIDADE_LENS_INLINE Mask depthAt(const Tilt<T>& tilt, const Floats& z, const Floats& alongRow, const Floats& alongColumn,
-                                 const Floats& squaredDistance, const Mask& middle, Floats& depth) {
-  const Floats free = (alongRow + alongColumn) - tilt.bend * squaredDistance;
-  const Mask near = free > tilt.most, far = free < tilt.least;
-  Floats t = near ? Floats{} + tilt.most : free;
-  t = far ? Floats{} + tilt.least : t;
-  depth = z * ((1.0f - t) * (1.0f + t * t));
-  return ~(near | far) | middle;
+ALIDADE_LENS_INLINE Floats magnitude(const Floats& value) {
+  return reinterpret_cast<Floats>(reinterpret_cast<Words>(value) & 0x7fffffffu);  // of -0, too
+}
+
+/// What t owes to a distance along one axis.
+template <class T>
+ALIDADE_LENS_INLINE Floats along(const T& slope, const T& bend, const Floats& distance) {
+  return distance * (slope - bend * distance);
+}
+
+/// The depth of one pixel of each footprint; false where it has none there. z / (1 + t), without its cube and
+/// what is smaller: a division would take most of the time.
+template <class T>
+ALIDADE_LENS_INLINE Ints depthAt(const Tilt<T>& tilt, const Floats& z, const Floats& free, const Ints& middle, Floats& depth) {
+  const Floats least = Floats{} + tilt.least, most = Floats{} + tilt.most;
+  const Floats above = free > least ? free : least;
+  const Floats t = above < most ? above : most;
+  depth = z * (1.0f - t * (1.0f - t));
+  return (t == free) | middle;
 }
 
 template <bool packed>
@@ -99,19 +113,18 @@ ALIDADE_LENS_INLINE void drawSideBySide(const SplatView& view, const Projected& 
     if (lanesOf(inRows) == 0) break;
     const Ints y = f.top + j;
     const Floats dy = __builtin_convertvector(y, Floats) - p.v;
+    const Floats alongColumn = along(f.tilt.alongV, f.tilt.bend, dy);
+    const Ints isMiddleY = y == f.middleY;
     for (int i = 0;; ++i) {
       Ints inside = inRows & (f.columns > i);
       if (lanesOf(inside) == 0) break;
       const Ints x = f.left + i;
       const Floats dx = __builtin_convertvector(x, Floats) - p.u;
-      const Floats squaredDistance = dx * dx + dy * dy;
-      inside &= ~(squaredDistance > f.radiusSquared);
+      if (view.round) inside &= ~(dx * dx + dy * dy > f.radiusSquared);
       Floats depth = p.z;
       if (!allFlat) {
         Floats tilted;
-        const Ints isMiddle = (x == f.middleX) & (y == f.middleY);
-        inside &= depthAt(f.tilt, p.z, Floats(f.tilt.alongU * dx), Floats(f.tilt.alongV * dy), squaredDistance, isMiddle,
-                                  tilted) | f.flat;
+        inside &= depthAt(f.tilt, p.z, Floats(along(f.tilt.alongU, f.tilt.bend, dx) + alongColumn), Ints((x == f.middleX) & isMiddleY), tilted) | f.flat;
         depth = f.flat ? p.z : tilted;
       }
       const Ints at = y * view.width + x;
@@ -121,55 +134,87 @@ ALIDADE_LENS_INLINE void drawSideBySide(const SplatView& view, const Projected& 
   }
 }
 
-/// Nearest wins in the chosen of kLanes pixels side by side.
-template <bool packed>
-ALIDADE_LENS_INLINE void putRow(const SplatTarget& target, std::size_t at, Lanes chosen, const Words& depth,
-                                std::uint32_t payload) {
 #if ALIDADE_SPLAT_LANES == 16
-  const __m512i bits = reinterpret_cast<__m512i>(depth);
-  if constexpr (packed) {
-    const __m512i below = _mm512_set1_epi64(payload);
-    const auto putHalf = [&](std::uint64_t* pixels, __mmask8 half, __m256i depths) __attribute__((always_inline)) {
-      const __m512i value = _mm512_or_si512(_mm512_slli_epi64(_mm512_cvtepu32_epi64(depths), 32), below);
-      _mm512_mask_storeu_epi64(pixels, half, _mm512_min_epu64(_mm512_maskz_loadu_epi64(half, pixels), value));
-    };
-    putHalf(target.packed + at, static_cast<__mmask8>(chosen), _mm512_castsi512_si256(bits));
-    if (chosen >> 8) putHalf(target.packed + at + 8, static_cast<__mmask8>(chosen >> 8), _mm512_extracti64x4_epi64(bits, 1));
-  } else {
-    std::uint32_t* pixels = target.depth + at;
-    _mm512_mask_storeu_epi32(pixels, chosen, _mm512_min_epu32(_mm512_maskz_loadu_epi32(chosen, pixels), bits));
-  }
-#else
-  for (int i = 0; i < kLanes; ++i)
-    if (chosen >> i & 1) put<packed>(target, at + static_cast<std::size_t>(i), depth[i], payload);
-#endif
+
+/// Nearest wins in the chosen of eight pixels side by side.
+ALIDADE_LENS_INLINE void putEight(std::uint64_t* pixels, __mmask8 chosen, const __m512i& value) {
+  _mm512_mask_storeu_epi64(pixels, chosen, _mm512_min_epu64(_mm512_maskz_loadu_epi64(chosen, pixels), value));
+}
+ALIDADE_LENS_INLINE void putEight(std::uint32_t* pixels, __mmask8 chosen, const __m256i& value) {
+  _mm256_mask_storeu_epi32(pixels, chosen, _mm256_min_epu32(_mm256_maskz_loadu_epi32(chosen, pixels), value));
 }
 
-/// One lane's footprint.
+/// The first eight lanes' pixels from `at` on, the others' from `then` on.
 template <bool packed>
+ALIDADE_LENS_INLINE void putLanes(const SplatTarget& target, std::size_t at, std::size_t then, Lanes chosen, const Words& depth,
+                                  std::uint32_t payload) {
+  const __m512i bits = reinterpret_cast<__m512i>(depth);
+  const auto first = static_cast<__mmask8>(chosen), second = static_cast<__mmask8>(chosen >> 8);
+  if constexpr (packed) {
+    // The payload below each depth.
+    const __m512i low = _mm512_setr_epi32(16, 0, 16, 1, 16, 2, 16, 3, 16, 4, 16, 5, 16, 6, 16, 7);
+    const __m512i high = _mm512_setr_epi32(16, 8, 16, 9, 16, 10, 16, 11, 16, 12, 16, 13, 16, 14, 16, 15);
+    const __m512i below = _mm512_set1_epi32(static_cast<int>(payload));
+    putEight(target.packed + at, first, _mm512_permutex2var_epi32(bits, low, below));
+    putEight(target.packed + then, second, _mm512_permutex2var_epi32(bits, high, below));
+  } else {
+    putEight(target.depth + at, first, _mm512_castsi512_si256(bits));
+    putEight(target.depth + then, second, _mm512_extracti64x4_epi64(bits, 1));
+  }
+}
+
+#else
+
+template <bool packed>
+ALIDADE_LENS_INLINE void putLanes(const SplatTarget& target, std::size_t at, std::size_t, Lanes chosen, const Words& depth,
+                                  std::uint32_t payload) {
+  for (int i = 0; i < kLanes; ++i)
+    if (chosen >> i & 1) put<packed>(target, at + static_cast<std::size_t>(i), depth[i], payload);
+}
+
+#endif
+
+/// One lane's footprint: `kColumns` pixels of a row at a time, and as many rows as that leaves lanes for.
+template <bool packed, int kColumns>
 ALIDADE_LENS_INLINE void drawRows(const SplatView& view, const Projected& p, const Footprints& f, int lane,
                                   std::uint32_t payload, const SplatTarget& target) {
+  constexpr int kRows = kLanes / kColumns;
+  const Ints iota = reinterpret_cast<Ints>(kIota);
+  const Ints inRow = iota % kColumns, ofRow = iota / kColumns;
   const float u = p.u[lane], v = p.v[lane], radiusSquared = f.radiusSquared[lane];
   const int left = f.left[lane], top = f.top[lane], columns = f.columns[lane], rows = f.rows[lane];
   const int middleX = f.middleX[lane], middleY = f.middleY[lane];
   const bool flat = f.flat[lane] != 0;
   const Tilt<float> tilt{f.tilt.alongU[lane], f.tilt.alongV[lane], f.tilt.bend[lane], f.tilt.least[lane], f.tilt.most[lane]};
   const Floats z = Floats{} + p.z[lane];
-  for (int first = 0; first < columns; first += kLanes) {
-    const Ints column = reinterpret_cast<Ints>(kIota) + first;
-    const Ints x = column + left, inColumns = column < columns, isMiddleX = x == middleX;
+  const auto width = static_cast<std::size_t>(view.width);
+  for (int first = 0; first < columns; first += kColumns) {
+    const Ints column = inRow + first, x = column + left;
+    const Ints inColumns = column < columns, isMiddleX = x == middleX;
     const Floats dx = __builtin_convertvector(x, Floats) - u;
-    const Floats alongRow = tilt.alongU * dx;
-    std::size_t at = static_cast<std::size_t>(top) * view.width + left + first;
-    for (int y = top; y < top + rows; ++y, at += view.width) {
-      const Floats dy = Floats{} + (static_cast<float>(y) - v);
-      const Floats squaredDistance = dx * dx + dy * dy;
-      Ints inside = inColumns & ~(squaredDistance > radiusSquared);
+    const Floats alongRow = along(tilt.alongU, tilt.bend, dx);
+    std::size_t at = static_cast<std::size_t>(top) * width + static_cast<std::size_t>(left + first);
+    for (int row = 0; row < rows; row += kRows, at += kRows * width) {
+      const Ints y = ofRow + (top + row);
+      const Floats dy = __builtin_convertvector(y, Floats) - v;
+      Ints inside = inColumns;
+      if (kRows > 1) inside &= y < top + rows;
+      if (view.round) inside &= ~(dx * dx + dy * dy > radiusSquared);
       Floats depth = z;
-      if (!flat) inside &= depthAt(tilt, z, alongRow, Floats(tilt.alongV * dy), squaredDistance, Ints(y == middleY ? isMiddleX : Ints{}), depth);
-      putRow<packed>(target, at, lanesOf(inside), reinterpret_cast<Words>(depth), payload);
+      if (!flat) inside &= depthAt(tilt, z, Floats(alongRow + along(tilt.alongV, tilt.bend, dy)), Ints(isMiddleX & (y == middleY)), depth);
+      putLanes<packed>(target, at, at + (kRows > 1 ? width : 8), lanesOf(inside), reinterpret_cast<Words>(depth), payload);
     }
   }
+}
+
+/// Footprints all of which lie behind what the tiles around them show; those that reach farther are not looked up.
+ALIDADE_LENS_INLINE Ints isHidden(const SplatView& view, const Projected& p, const Floats& size, const SplatTarget& target) {
+  const Floats right = Floats{} + static_cast<float>(view.width - 1), bottom = Floats{} + static_cast<float>(view.height - 1);
+  const Floats u = p.u < right ? p.u : right, v = p.v < bottom ? p.v : bottom;
+  const Ints column = __builtin_convertvector(u > 0.0f ? u : Floats{}, Ints) >> kHiddenTileLog2;
+  const Ints row = __builtin_convertvector(v > 0.0f ? v : Floats{}, Ints) >> kHiddenTileLog2;
+  const Floats h = halfWidthOf(view, size);
+  return (p.z * (1.0f - h * (h + 1.0f)) > gatherFloats(target.farthest, row * target.tileColumns + column)) & (size <= 14.0f);
 }
 
 template <LensKind kind, bool packed>
@@ -182,14 +227,26 @@ ALIDADE_LENS_INLINE void drawFootprints(const SplatView& view, const Projected& 
   const Floats atMost = wanted < view.largest ? wanted : (zero + view.largest);
   const Floats size = atMost > view.smallest ? atMost : (zero + view.smallest);
   const Floats half = 0.5f * size;
-  const Ints reaches = p.valid & (p.u + half > -0.5f) & (p.u - half < view.width - 0.5f) &
+  Ints reaches = p.valid & (p.u + half > -0.5f) & (p.u - half < view.width - 0.5f) &
                        (p.v + half > -0.5f) & (p.v - half < view.height - 0.5f);
+  if (target.farthest) reaches &= ~isHidden(view, p, size, target);
   if (lanesOf(reaches) == 0) return;
   Footprints f;
-  const Ints left = floorOf(p.u - half) + 1, top = floorOf(p.v - half) + 1;
+  f.flat = ~Ints{};
+  f.tilt = Tilt<Floats>{};
+  Floats halfU = half, halfV = half;
+  if (view.cellNormals) {
+    layOnSurface<kind>(view, p, size, f);
+    // Where t is sure to leave its bounds there is nothing to look at: most of a floor's squares at a grazing angle.
+    const Floats slopeU = magnitude(f.tilt.alongU), slopeV = magnitude(f.tilt.alongV);
+    const Floats reachU = 1.0f + (f.tilt.most + slopeV * half) * 1.01f / slopeU, reachV = 1.0f + (f.tilt.most + slopeU * half) * 1.01f / slopeV;
+    halfU = ~f.flat & (reachU < half) ? reachU : half;
+    halfV = ~f.flat & (reachV < half) ? reachV : half;
+  }
+  const Ints left = floorOf(p.u - halfU) + 1, top = floorOf(p.v - halfV) + 1;
   f.left = left < 0 ? Ints{} : left;
   f.top = top < 0 ? Ints{} : top;
-  const Ints right = floorOf(p.u + half), bottom = floorOf(p.v + half);
+  const Ints right = floorOf(p.u + halfU), bottom = floorOf(p.v + halfV);
   f.columns = (right < view.width ? right + 1 : Ints{} + view.width) - f.left;
   f.rows = (bottom < view.height ? bottom + 1 : Ints{} + view.height) - f.top;
   f.middleX = floorOf(p.u + 0.5f);
@@ -197,15 +254,16 @@ ALIDADE_LENS_INLINE void drawFootprints(const SplatView& view, const Projected& 
   // A disc of two pixels and less is its square, else it could miss every centre.
   f.radiusSquared = size * size;
   if (view.round) f.radiusSquared = size > 2.0f ? half * half : f.radiusSquared;
-  f.flat = ~Ints{};
-  f.tilt = Tilt<Floats>{};
-  if (view.cellNormals) layOnSurface<kind>(view, p, size, f);
   const Words payload = payloadOf(target, place, p.colour);
-  const Ints wide = reaches & (size > kSideBySide);
+  const Ints wide = reaches & ((f.columns > kSideBySide) | (f.rows > kSideBySide));
   drawSideBySide<packed>(view, p, f, Ints(reaches & ~wide), payload, queue);
   for (Lanes waiting = lanesOf(wide); waiting != 0; waiting &= static_cast<Lanes>(waiting - 1)) {
     const int lane = __builtin_ctz(waiting);
-    drawRows<packed>(view, p, f, lane, payload[lane], target);
+    if (kLanes > 8 && f.columns[lane] <= 8) {
+      drawRows<packed, kLanes < 8 ? kLanes : 8>(view, p, f, lane, payload[lane], target);
+    } else {
+      drawRows<packed, kLanes>(view, p, f, lane, payload[lane], target);
+    }
   }
 }
 

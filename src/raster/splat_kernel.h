@@ -63,7 +63,13 @@ struct SplatTarget {
   std::uint64_t* packed = nullptr;  ///< the others
   SplatPayload payload = SplatPayload::None;
   std::uint32_t payloadBase = 0;
+  /// Metres, by tile of 8×8 pixels: the farthest that can be seen in it and in the eight around it (see
+  /// raster/hidden_tiles.h); null: nothing is known to be hidden.
+  const float* farthest = nullptr;
+  int tileColumns = 0;
 };
+
+inline constexpr int kHiddenTileLog2 = 3;
 
 struct SplatKernel {
   const char* name;

@@ -54,6 +54,17 @@ ALIDADE_WIDEST void findHoles(const float* top, const float* above, const float*
   }
 }
 
+ALIDADE_WIDEST void raiseToFarthest(const float* top, const float* above, const float* own, const float* below,
+                                    const float* bottom, std::size_t count, float* columns) {
+  const auto nearer = [](float a, float b) __attribute__((always_inline)) { return a < b ? a : b; };
+  const auto farther = [](float a, float b) __attribute__((always_inline)) { return a > b ? a : b; };
+  for (std::size_t i = 0; i < count; ++i) {
+    const float sides = farther(nearer(own[i - 1], own[i - 2]), nearer(own[i + 1], own[i + 2]));
+    const float ends = farther(nearer(above[i], top[i]), nearer(below[i], bottom[i]));
+    columns[i] = farther(columns[i], nearer(own[i], kOneSurface * farther(sides, ends)));
+  }
+}
+
 std::uint32_t withDepth(float depth, std::uint32_t) {
   return std::bit_cast<std::uint32_t>(depth);
 }
@@ -137,12 +148,23 @@ void MergedRows<Pixel>::closeHoles(int y) {
 }
 
 template <class Pixel>
-const Pixel* MergedRows<Pixel>::row(int y) {
-  if (!m_closeHoles) return join(y), slot(y).pixels.data();
+void MergedRows<Pixel>::joinAround(int y) {
   if (m_joined < 0) m_joined = y - kReach;
   for (; m_joined <= y + kReach; ++m_joined) join(m_joined);
+}
+
+template <class Pixel>
+const Pixel* MergedRows<Pixel>::row(int y) {
+  if (!m_closeHoles) return join(y), slot(y).pixels.data();
+  joinAround(y);
   closeHoles(y);
   return m_closed.data();
+}
+
+template <class Pixel>
+void MergedRows<Pixel>::addFarthest(int y, float* columns) {
+  joinAround(y);
+  raiseToFarthest(depthOf(y - 2), depthOf(y - 1), depthOf(y), depthOf(y + 1), depthOf(y + 2), static_cast<std::size_t>(m_width), columns);
 }
 
 template class MergedRows<std::uint32_t>;

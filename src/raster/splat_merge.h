@@ -25,6 +25,9 @@ class MergedRows {
   /// Row y, which must be the one after the row asked for before. All ones where nothing was drawn; valid until the next call.
   const Pixel* row(int y);
 
+  /// Where holes are closed: raises each column's depth to that behind which nothing shows in row y, in the same order of rows.
+  void addFarthest(int y, float* columns);
+
  private:
   static constexpr int kReach = 2, kRows = 2 * kReach + 1;
   struct Row {
@@ -34,6 +37,7 @@ class MergedRows {
   Row& slot(int y) { return m_rows[static_cast<std::size_t>((y + kRows) % kRows)]; }
   const float* depthOf(int y) { return slot(y).depth.data() + kReach; }
   void join(int y);
+  void joinAround(int y);
   void closeHoles(int y);
   void close(int y, int x);
 

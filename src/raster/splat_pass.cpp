@@ -10,6 +10,7 @@
 #include <mutex>
 #include <new>
 #include <numbers>
+#include <optional>
 #include <utility>
 
 #if defined(__linux__)
@@ -18,6 +19,7 @@
 
 #include "base/log.h"
 #include "base/parallel.h"
+#include "raster/hidden_tiles.h"
 
 namespace alidade {
 
@@ -29,6 +31,8 @@ constexpr std::size_t kAlignment = kHugePage;
 /// so they are wider by this; one pixel as long as that is how far apart they are (closeHoles fills in).
 constexpr double kCover = 1.5;
 constexpr std::uint32_t kPointsPerTask = 16384;
+/// What is hidden is looked up when the nearest seventh of the points is drawn.
+constexpr std::uint64_t kNearestShare = 7, kFewToHide = 500'000;
 constexpr std::size_t kRowsPerBand = 64;
 
 /// Blocks of past frames, a few of them; two frames of one size need no allocation.
@@ -112,39 +116,71 @@ const void* drawOnDevice(SplatDevice* device, std::span<const SplatRun> runs, in
   return nullptr;
 }
 
+/// The nearest tasks, after which it pays to look what they hide; all where it does not: with few points, or where the
+/// nearest are of one pixel, seen from afar.
+std::size_t nearestPart(std::span<const SplatRun> runs, const std::vector<Task>& tasks) {
+  std::uint64_t all = 0, drawn = 0, wide = 0;
+  for (const Task& task : tasks) all += task.count;
+  if (all < kFewToHide) return tasks.size();
+  std::size_t i = 0;
+  for (; i < tasks.size() && drawn < all / kNearestShare; ++i) {
+    drawn += tasks[i].count;
+    if (!runs[tasks[i].run].view.onePixel) wide += tasks[i].count;
+  }
+  return 2 * wide > drawn ? i : tasks.size();
+}
+
 template <class Pixel>
-void drawPlanes(std::span<const SplatRun> runs, int width, int height, SplatPayload payload,
-                SplatDevice* device,
+void drawPlanes(std::span<const SplatRun> runs, int width, int height, SplatPayload payload, bool closeHoles, SplatDevice* device,
                 const std::function<void(const SplatPlanes<Pixel>&, int, int)>& merge) {
   const SplatKernel& kernel = splatKernel();
   const std::size_t pixels = static_cast<std::size_t>(width) * height;
   const std::size_t bytes = pixels * sizeof(Pixel);
   std::vector<std::unique_ptr<SplatScratch>> scratch(workerCount());
   const auto* drawn = static_cast<const Pixel*>(drawOnDevice(device, runs, width, height, payload));
-  const std::vector<Task> tasks = tasksOf(runs, drawn != nullptr);
-  parallelFor(tasks.size(), 1, [&](std::size_t first, std::size_t last, int worker) {
-    if (!scratch[worker]) {
-      scratch[worker] = std::make_unique<SplatScratch>(bytes);
-      std::memset(scratch[worker]->data(), 0xff, bytes);
-    }
-    SplatTarget target;
-    target.payload = payload;
-    if constexpr (sizeof(Pixel) == 4) {
-      target.depth = static_cast<Pixel*>(scratch[worker]->data());
-    } else {
-      target.packed = static_cast<Pixel*>(scratch[worker]->data());
-    }
-    for (std::size_t i = first; i < last; ++i) {
-      const SplatRun& run = runs[tasks[i].run];
-      target.payloadBase = run.payloadBase + (payload == SplatPayload::Index ? tasks[i].first : 0);
-      kernel.draw(run.view, &run.points[tasks[i].first].x, tasks[i].count, target);
-    }
-  });
-  SplatPlanes<Pixel> planes;
-  if (drawn) planes.planes.push_back(drawn);
-  for (const auto& block : scratch) {
-    if (block) planes.planes.push_back(static_cast<const Pixel*>(block->data()));
+  std::vector<Task> tasks = tasksOf(runs, drawn != nullptr);
+  if (closeHoles) std::ranges::stable_sort(tasks, {}, [&](const Task& task) { return runs[task.run].nearest; });
+
+  const HiddenTiles* hidden = nullptr;
+  const auto drawTasks = [&](std::size_t begin, std::size_t end) {
+    parallelFor(end - begin, 1, [&](std::size_t first, std::size_t last, int worker) {
+      if (!scratch[worker]) {
+        scratch[worker] = std::make_unique<SplatScratch>(bytes);
+        std::memset(scratch[worker]->data(), 0xff, bytes);
+      }
+      SplatTarget target;
+      target.payload = payload;
+      if constexpr (sizeof(Pixel) == 4) {
+        target.depth = static_cast<Pixel*>(scratch[worker]->data());
+      } else {
+        target.packed = static_cast<Pixel*>(scratch[worker]->data());
+      }
+      if (hidden) target.farthest = hidden->farthest(), target.tileColumns = hidden->columns();
+      for (std::size_t i = begin + first; i < begin + last; ++i) {
+        const SplatRun& run = runs[tasks[i].run];
+        if (hidden && hidden->hides(run)) continue;
+        target.payloadBase = run.payloadBase + (payload == SplatPayload::Index ? tasks[i].first : 0);
+        kernel.draw(run.view, &run.points[tasks[i].first].x, tasks[i].count, target);
+      }
+    });
+  };
+  const auto planesNow = [&] {
+    SplatPlanes<Pixel> planes;
+    if (drawn) planes.planes.push_back(drawn);
+    for (const auto& block : scratch)
+      if (block) planes.planes.push_back(static_cast<const Pixel*>(block->data()));
+    return planes;
+  };
+  const std::size_t near = closeHoles ? nearestPart(runs, tasks) : tasks.size();
+  drawTasks(0, near);
+  std::optional<HiddenTiles> tiles;
+  if (near < tasks.size()) {
+    tiles.emplace(width, height);
+    tiles->look(planesNow());
+    hidden = &*tiles;
+    drawTasks(near, tasks.size());
   }
+  const SplatPlanes<Pixel> planes = planesNow();
   parallelFor(static_cast<std::size_t>(height), kRowsPerBand, [&](std::size_t first, std::size_t last, int) {
     merge(planes, static_cast<int>(first), static_cast<int>(last));
   });
@@ -307,6 +343,10 @@ SplatRun makeRun(const PointStore& store, const SelectedRange& range, const Rigi
   run.view.sizeTimesDepth = static_cast<float>(sizeTimesDepth);
   run.view.sizeLess = isAutomatic ? static_cast<float>(kCover - 1.0) : 0.0f;
   const double nearest = nearestDepth(node.bounds, cameraFromWorld);
+  run.nearest = nearest;
+  run.boxMiddle = rotation * (node.bounds.centre() - cameraFromWorld.centre());
+  const glm::dvec3 half = 0.5 * node.bounds.size();
+  run.boxHalf = glm::dmat3(rotation[0] * half.x, rotation[1] * half.y, rotation[2] * half.z);
   run.view.onePixel = base.largest <= 1.0f || (base.smallest <= 1.0f && sizeTimesDepth <= (1.0 + run.view.sizeLess) * nearest);
   return run;
 }
@@ -330,14 +370,14 @@ std::vector<CellNormals> layFootprints(std::span<SplatRun> runs, const RigidTran
 }
 
 void drawRuns(
-    std::span<const SplatRun> runs, int width, int height, SplatPayload payload,
+    std::span<const SplatRun> runs, int width, int height, SplatPayload payload, bool closeHoles,
     const std::function<void(const SplatPlanes<std::uint32_t>&, int, int)>& mergeDepth,
     const std::function<void(const SplatPlanes<std::uint64_t>&, int, int)>& mergePacked,
     SplatDevice* device) {
   if (payload == SplatPayload::None) {
-    drawPlanes<std::uint32_t>(runs, width, height, payload, device, mergeDepth);
+    drawPlanes<std::uint32_t>(runs, width, height, payload, closeHoles, device, mergeDepth);
   } else {
-    drawPlanes<std::uint64_t>(runs, width, height, payload, device, mergePacked);
+    drawPlanes<std::uint64_t>(runs, width, height, payload, closeHoles, device, mergePacked);
   }
 }
 

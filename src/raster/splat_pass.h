@@ -40,6 +40,9 @@ struct SplatRun {
   std::uint32_t count = 0;
   std::uint32_t payloadBase = 0;
   double spacing = 0;  ///< that its footprints follow, node steps; 0: they are of one size in the world or on screen
+  glm::dvec3 boxMiddle{0};  ///< of its node's points, in the camera's frame, metres
+  glm::dmat3 boxHalf{0};    ///< columns: half the box's edges there
+  double nearest = 0;       ///< depth, see nearestDepth()
   SplatView view;
 };
 
@@ -67,9 +70,10 @@ std::vector<CellNormals> layFootprints(std::span<SplatRun> runs, const RigidTran
 
 /// Draws the runs on all cores, one private plane a thread, then hands the planes to `merge` for
 /// bands of rows [first, last), on all cores too. payload None draws 32-bit pixels and calls the
-/// first; anything else 64-bit ones and the second. A device draws the runs that need no domain check.
+/// first; anything else 64-bit ones and the second. A device draws the runs that need no domain check. Where holes
+/// will be closed, the processor leaves out what HiddenTiles finds hidden.
 void drawRuns(
-    std::span<const SplatRun> runs, int width, int height, SplatPayload payload,
+    std::span<const SplatRun> runs, int width, int height, SplatPayload payload, bool closeHoles,
     const std::function<void(const SplatPlanes<std::uint32_t>&, int, int)>& mergeDepth,
     const std::function<void(const SplatPlanes<std::uint64_t>&, int, int)>& mergePacked,
     SplatDevice* device = nullptr);

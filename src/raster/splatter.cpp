@@ -144,7 +144,7 @@ void splatGroup(const std::vector<SplatLayer>& layers, const LayerGroup& group, 
       else takeColours(pixels, rowSize, images.depth.row(y), reinterpret_cast<std::uint32_t*>(images.colour.row(y)));
     }
   };
-  drawRuns(runs, width, height, payload, mergeDepth, mergePacked, options.device);
+  drawRuns(runs, width, height, payload, closeHoles, mergeDepth, mergePacked, options.device);
 }
 
 }  // namespace

@@ -1,0 +1,81 @@
+// SPDX-FileCopyrightText: 2026 the Alidade authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "raster/hidden_tiles.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "base/parallel.h"
+#include "raster/splat_merge.h"
+
+namespace alidade {
+
+namespace {
+
+constexpr int kSize = 1 << kHiddenTileLog2;
+constexpr std::size_t kTileRowsAtATime = 8;
+/// Boxes that are larger on screen are never hidden as a whole, and a lens would bend their edges far out of their corners.
+constexpr double kLargestPx = 600.0;
+
+}  // namespace
+
+HiddenTiles::HiddenTiles(int width, int height)
+    : m_width(width), m_height(height), m_columns((width + kSize - 1) / kSize), m_rows((height + kSize - 1) / kSize),
+      m_own(static_cast<std::size_t>(m_columns) * m_rows), m_farthest(m_own.size()) {}
+
+template <class Pixel>
+void HiddenTiles::look(const SplatPlanes<Pixel>& planes) {
+  parallelFor(static_cast<std::size_t>(m_rows), kTileRowsAtATime, [&](std::size_t first, std::size_t last, int) {
+    MergedRows<Pixel> rows(planes, m_width, m_height, true);
+    std::vector<float> column(static_cast<std::size_t>(m_columns) * kSize);
+    for (std::size_t tile = first; tile < last; ++tile) {
+      std::ranges::fill(column, 0.0f);
+      const int end = std::min(static_cast<int>(tile + 1) * kSize, m_height);
+      for (int y = static_cast<int>(tile) * kSize; y < end; ++y) rows.addFarthest(y, column.data());
+      for (int x = 0; x < m_columns; ++x)
+        m_own[tile * static_cast<std::size_t>(m_columns) + static_cast<std::size_t>(x)] = *std::max_element(column.begin() + x * kSize, column.begin() + (x + 1) * kSize);
+    }
+  });
+  for (int y = 0; y < m_rows; ++y) {
+    for (int x = 0; x < m_columns; ++x) {
+      float farthest = 0;
+      for (int j = std::max(0, y - 1); j <= std::min(m_rows - 1, y + 1); ++j)
+        for (int i = std::max(0, x - 1); i <= std::min(m_columns - 1, x + 1); ++i) farthest = std::max(farthest, m_own[static_cast<std::size_t>(j * m_columns + i)]);
+      m_farthest[static_cast<std::size_t>(y * m_columns + x)] = farthest;
+    }
+  }
+}
+
+bool HiddenTiles::hides(const SplatRun& run) const {
+  const Camera& camera = *static_cast<const Camera*>(run.view.camera);
+  glm::dvec2 low(std::numeric_limits<double>::infinity()), high(-low);
+  for (int i = 0; i < 8; ++i) {
+    const glm::dvec3 sides((i & 1) != 0 ? 1 : -1, (i & 2) != 0 ? 1 : -1, (i & 4) != 0 ? 1 : -1);
+    const glm::dvec3 corner = run.boxMiddle + run.boxHalf * sides;
+    if (!(corner.z > 0)) return false;
+    const auto pixel = camera.project(corner);
+    if (!pixel) return false;
+    low = glm::min(low, *pixel);
+    high = glm::max(high, *pixel);
+  }
+  const double reach = glm::length(high - low);
+  if (!(reach < kLargestPx)) return false;
+  // A straight edge bends by no more than that of a circle as wide as the focal length.
+  const double bulge = reach * reach / (8.0 * std::min(std::abs(camera.intrinsics().fx), std::abs(camera.intrinsics().fy)));
+  const double size = std::clamp<double>(run.view.sizeTimesDepth / run.nearest, run.view.smallest, run.view.largest);
+  const double margin = std::max(0.0, bulge + size - kSize);  // the tiles around a tile are looked at in any case
+  const auto tileOf = [](double pixel, int count) { return static_cast<int>(std::clamp(std::floor((pixel + 0.5) / kSize), 0.0, count - 1.0)); };
+  const int left = tileOf(low.x - margin, m_columns), right = tileOf(high.x + margin, m_columns);
+  const int top = tileOf(low.y - margin, m_rows), bottom = tileOf(high.y + margin, m_rows);
+  for (int y = top; y <= bottom; ++y)
+    for (int x = left; x <= right; ++x)
+      if (!(m_farthest[static_cast<std::size_t>(y * m_columns + x)] < 0.9 * run.nearest)) return false;
+  return true;
+}
+
+template void HiddenTiles::look(const SplatPlanes<std::uint32_t>&);
+template void HiddenTiles::look(const SplatPlanes<std::uint64_t>&);
+
+}  // namespace alidade
