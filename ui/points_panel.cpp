@@ -231,6 +231,11 @@ void PointsPanel::buildLook() {
       {tr("Points a pixel"), tr("Points a square metre")},
       [](const auto& d) { return static_cast<double>(d.densityLaw); },
       [](auto& d, double v) { d.densityLaw = static_cast<DensityLaw>(static_cast<int>(v)); });
+  choice(
+      form, tr("Thinned"), tr("What a distance is taken of when far points are left out: a part of the scan, each point, or the nearest part for all"),
+      {tr("Part by part"), tr("Point by point"), tr("All alike")},
+      [](const auto& d) { return static_cast<double>(d.levelThreshold); },
+      [](auto& d, double v) { d.levelThreshold = static_cast<LevelThreshold>(static_cast<int>(v)); });
   number(
       form, tr("At full density"), tr("Points a square metre one metre away, for the density by area"),
       tr(" k/m²"), 1, 2000, 10, 0, [](const auto& d) { return d.pointsPerSquareMetre / 1000; },

@@ -1,7 +1,7 @@
 -- SPDX-FileCopyrightText: 2026 the Alidade authors
 -- SPDX-License-Identifier: BSD-3-Clause
 --
--- The project file, version 3 (PRAGMA user_version; application_id is "ALID"). Lengths are metres in
+-- The project file, version 4 (PRAGMA user_version; application_id is "ALID"). Lengths are metres in
 -- the project's own system (E, N, up), angles radians, times seconds, pixels have OpenCV's origin.
 -- `position` keeps the order of a list from 0. Numbers without a type keep every bit of a double: a
 -- REAL column would turn -0.0 into 0. NULL in such a column is NaN. Text that is not UTF-8 is a blob.
@@ -11,9 +11,10 @@ CREATE TABLE project (
   name, crs
 );
 
+-- level_threshold since version 4.
 CREATE TABLE display (
   image_pass, depth_pass, design_pass, point_pass,
-  density, density_law, points_per_square_metre, point_size, round_points,
+  density, density_law, points_per_square_metre, level_threshold, point_size, round_points,
   hidden, design_opacity, design_edges, design_faces, grayscale_image, grayscale_design,
   light_x, light_y, light_z, ambient, diffuse, specular, shininess,
   stake_points, annotations, labels,

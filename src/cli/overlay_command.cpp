@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <map>
 
 #include <fmt/format.h>
 
@@ -21,8 +22,11 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+const std::map<std::string, LevelThreshold> kThresholds = {
+    {"node", LevelThreshold::ByDistance}, {"point", LevelThreshold::ByPoint}, {"uniform", LevelThreshold::Uniform}};
+
 struct Arguments {
-  std::string project, frame, output, passes, hidden, size, range;
+  std::string project, frame, output, passes, hidden, size, range, threshold;
   std::optional<double> density, pointSize, time;
   bool bare = false;
 };
@@ -186,6 +190,7 @@ Result<Answer> run(const Arguments& arguments, const PointStyleOptions& style, c
   }
   DisplaySettings& display = open->project.display;
   if (arguments.density) display.density = *arguments.density;
+  if (!arguments.threshold.empty()) display.levelThreshold = kThresholds.at(arguments.threshold);
   if (arguments.pointSize) display.pointSize = *arguments.pointSize;
   if (!arguments.passes.empty())
     if (auto done = applyPasses(arguments.passes, display); !done) return fail(done.error());
@@ -241,6 +246,8 @@ void addOverlay(Verbs& verbs) {
   which->require_option(1);
   command->add_option("-o,--output", arguments->output, "PNG to write; MP4 or folder with --range")->required();
   command->add_option("--density", arguments->density, "Point density, 0 to 1")->check(CLI::Range(0.0, 1.0));
+  command->add_option("--threshold", arguments->threshold, "What is thinned by one distance: a node, a point, or all alike")
+      ->check(CLI::IsMember({"node", "point", "uniform"}));
   command->add_option("--point-size", arguments->pointSize, "Factor on the automatic point size")->check(CLI::Range(0.1, 20.0));
   command->add_option("--passes", arguments->passes, "Of image,depth,design,points")
       ->check(checkedBy([](const std::string& list) { DisplaySettings ignored; return applyPasses(list, ignored); }, "LIST"));

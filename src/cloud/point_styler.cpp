@@ -22,6 +22,7 @@ constexpr std::size_t kKeptPoints = std::size_t{1} << 26;
 /// What is styled of one node: copies of those of its first `done` points that the filter leaves.
 struct StyledNode {
   std::vector<DisplayPoint> points;
+  std::vector<std::uint32_t> places;       ///< in the node of each copy; empty where all are left
   std::vector<std::uint32_t> leftAtBlock;  ///< copies made of the blocks before; empty where all are left
   std::uint32_t done = 0;
   std::uint64_t usedAt = 0;
@@ -71,6 +72,7 @@ struct PointStyler::Impl {
       for (std::uint32_t i = 0; i < size; ++i) {
         if (!all && !keep[i]) continue;
         styled.points.push_back(from[i]);
+        if (!all) styled.places.push_back(styled.done + i);
         if (colours) styled.points.back().rgb565 = colour[i];
       }
       styled.done += size;
@@ -122,6 +124,7 @@ void PointStyler::apply(const PointStyle& style, Part part, const glm::dvec3& ey
       m_impl->extend(*styled[i], node, range.count, filter, colours);
       range.count = m_impl->copiesFor(*styled[i], node, range.count, filter);
       range.styled = styled[i]->points.data();
+      range.places = styled[i]->places.empty() ? nullptr : styled[i]->places.data();
     }
   });
   std::erase_if(selection.ranges, [](const SelectedRange& range) { return range.count == 0; });

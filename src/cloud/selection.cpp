@@ -183,7 +183,7 @@ std::vector<Selection> cut(Stores stores, const std::vector<Candidate>& candidat
       const double share = store.levelLaw().shareBelow(level + store.lawShift());
       spacing /= std::sqrt(std::max(share, 1e-9));
     }
-    selections[c.store].ranges.push_back({c.node, node.first, count, spacing, nullptr});
+    selections[c.store].ranges.push_back({c.node, node.first, count, spacing});
     selections[c.store].pointCount += count;
   }
   return selections;
@@ -202,38 +202,22 @@ bool copyWanted(const PointStore& store, const Cuts& cuts, const glm::dvec3& eye
     // A step's points lie about its middle.
     return cuts.reachOf(node, (levels.firstStep + static_cast<double>(i) + 0.5 + deltaSteps) / kLevelSteps);
   };
-  const auto last = static_cast<std::size_t>(std::ranges::lower_bound(levels.cumulative, range.count) - levels.cumulative.begin());
+  const auto placeOf = [&](std::uint32_t p) { return range.places != nullptr ? range.places[p] : p; };
+  const auto last = static_cast<std::size_t>(std::ranges::lower_bound(levels.cumulative, placeOf(range.count - 1) + 1) - levels.cumulative.begin());
   if (!(reachOfStep(last) < farthestOf(node.bounds, eye))) return false;
   const glm::vec3 nodeFromEye(node.origin - eye);
   const auto unit = static_cast<float>(node.step);
-  const DisplayPoint* points = store.points().data() + range.first;
+  const DisplayPoint* points = range.styled != nullptr ? range.styled : store.points().data() + range.first;
   std::uint32_t p = 0;
   for (std::size_t i = 0; i <= last; ++i) {
     const double reach = reachOfStep(i);
     const float squared = static_cast<float>(reach * reach);
-    for (const std::uint32_t end = std::min(range.count, levels.cumulative[i]); p < end; ++p) {
+    for (; p < range.count && placeOf(p) < levels.cumulative[i]; ++p) {
       const glm::vec3 at = nodeFromEye + unit * glm::vec3(points[p].x, points[p].y, points[p].z);
       if (!(glm::dot(at, at) > squared)) copy.push_back(points[p]);
     }
   }
   return true;
-}
-
-void cutByPoint(const PointStore& store, const Cuts& cuts, const glm::dvec3& eye, double deltaSteps, Selection& selection) {
-  auto copies = std::make_shared<std::vector<std::vector<DisplayPoint>>>(selection.ranges.size());
-  parallelFor(selection.ranges.size(), 1, [&](std::size_t first, std::size_t last, int) {
-    for (std::size_t i = first; i < last; ++i) {
-      SelectedRange& range = selection.ranges[i];
-      std::vector<DisplayPoint>& copy = (*copies)[i];
-      if (!copyWanted(store, cuts, eye, deltaSteps, range, copy)) continue;
-      range.count = static_cast<std::uint32_t>(copy.size());
-      range.styled = copy.data();
-    }
-  });
-  std::erase_if(selection.ranges, [](const SelectedRange& range) { return range.count == 0; });
-  selection.pointCount = 0;
-  for (const SelectedRange& range : selection.ranges) selection.pointCount += range.count;
-  selection.owner = std::move(copies);
 }
 
 /// Prefixes of nodes, and the delta that they were cut with.
@@ -275,8 +259,10 @@ std::vector<Selection> selectFrom(Stores stores, const Camera& camera, const Rig
   for (const PointStore* store : stores) cuts.emplace_back(*store, camera, options);
   double delta = 0;
   std::vector<Selection> selections = selectPrefixes(stores, camera, cameraFromWorld, options, cuts, delta);
-  for (std::size_t s = 0; options.threshold == LevelThreshold::ByPoint && s < stores.size(); ++s)
-    cutByPoint(*stores[s], cuts[s], cameraFromWorld.centre(), delta, selections[s]);
+  for (std::size_t s = 0; s < stores.size(); ++s) {
+    selections[s].loweredSteps = delta;
+    if (options.threshold == LevelThreshold::ByPoint) cutByPoint(*stores[s], camera, cameraFromWorld, options, selections[s]);
+  }
   return selections;
 }
 
@@ -293,6 +279,28 @@ Selection select(const PointStore& store, const Camera& camera, const RigidTrans
                  const SelectionOptions& options) {
   const PointStore* const one = &store;
   return selectFrom({&one, 1}, camera, cameraFromWorld, options)[0];
+}
+
+void cutByPoint(const PointStore& store, const Camera& camera, const RigidTransform& cameraFromWorld,
+                const SelectionOptions& options, Selection& selection) {
+  const Cuts cuts(store, camera, options);
+  const glm::dvec3 eye = cameraFromWorld.centre();
+  std::erase_if(selection.ranges, [](const SelectedRange& range) { return range.count == 0; });
+  auto copies = std::make_shared<std::vector<std::vector<DisplayPoint>>>(selection.ranges.size());
+  parallelFor(selection.ranges.size(), 1, [&](std::size_t first, std::size_t last, int) {
+    for (std::size_t i = first; i < last; ++i) {
+      SelectedRange& range = selection.ranges[i];
+      std::vector<DisplayPoint>& copy = (*copies)[i];
+      if (!copyWanted(store, cuts, eye, selection.loweredSteps, range, copy)) continue;
+      range.count = static_cast<std::uint32_t>(copy.size());
+      range.styled = copy.data();
+      range.places = nullptr;
+    }
+  });
+  std::erase_if(selection.ranges, [](const SelectedRange& range) { return range.count == 0; });
+  selection.pointCount = 0;
+  for (const SelectedRange& range : selection.ranges) selection.pointCount += range.count;
+  selection.owner = std::move(copies);
 }
 
 Selection selectAll(const PointStore& store, const Camera& camera, const RigidTransform& cameraFromWorld) {

@@ -24,22 +24,15 @@ struct SelectedRange {
   /// What to draw instead of the store's own points: `count` copies, recoloured or filtered (see
   /// cloud/point_styler.h, which owns them); null for the store's own.
   const DisplayPoint* styled = nullptr;
+  /// Where in the range each of `styled` stood, ascending; null: they are its first.
+  const std::uint32_t* places = nullptr;
 };
 
 struct Selection {
   std::vector<SelectedRange> ranges;  ///< front to back by node
   std::uint64_t pointCount = 0;
-  std::shared_ptr<const void> owner;  ///< of what ranges draw instead of the store's points: LevelThreshold::ByPoint
-};
-
-/// Where a node's level is cut.
-enum class LevelThreshold {
-  ByDistance,  ///< each node by its own distance from the eye
-  /// Each point by its own distance (Zhang 2020), so that no node's border shows: ranges draw copies of the points
-  /// that are left, in their own colour. Costs a pass over the points in view; fewer are drawn than ByDistance draws.
-  /// Not for a PointStyler: its ranges would no longer be prefixes of nodes.
-  ByPoint,
-  Uniform,     ///< all nodes at the level that the nearest one wants (Zhang 2020, uniform threshold)
+  double loweredSteps = 0;  ///< that the slider and the budget lowered all levels by
+  std::shared_ptr<const void> owner;  ///< of what cutByPoint() lets ranges draw
 };
 
 struct SelectionOptions {
@@ -69,6 +62,12 @@ std::vector<Selection> select(std::span<const std::shared_ptr<const PointStore>>
                               const RigidTransform& cameraFromWorld, const SelectionOptions& options);
 Selection select(const PointStore& store, const Camera& camera, const RigidTransform& cameraFromWorld,
                  const SelectionOptions& options);
+
+/// What LevelThreshold::ByPoint leaves of the prefixes that ByDistance chose with the same options for the same camera: ranges draw
+/// copies of the points that their own distance wants. A PointStyler's ranges stay as they are coloured and filtered,
+/// and may change again after this. Costs a pass over the points in view. select() with ByPoint does both.
+void cutByPoint(const PointStore& store, const Camera& camera, const RigidTransform& cameraFromWorld,
+                const SelectionOptions& options, Selection& selection);
 
 /// Every point of every node in the field of view.
 Selection selectAll(const PointStore& store, const Camera& camera, const RigidTransform& cameraFromWorld);

@@ -104,6 +104,7 @@ void visit(V& v, DisplaySettings& d) {
   v("density", d.density);
   v.choice("density_law", d.densityLaw, {"points_per_pixel", "points_per_square_metre"});
   v("points_per_square_metre", d.pointsPerSquareMetre);
+  v.choice("level_threshold", d.levelThreshold, {"by_distance", "by_point", "uniform"});
   v("point_size", d.pointSize);
   v("round_points", d.roundPoints);
   v.choice("hidden", d.hidden, {"hide", "ghost", "dash"});

@@ -26,6 +26,8 @@ SelectionOptions selectionOptions(const FrameDescription& frame) {
   options.density = display.density;
   options.law = display.densityLaw;
   options.pointsPerSquareMetre = display.pointsPerSquareMetre;
+  // By point only what is drawn is cut, once it is styled.
+  options.threshold = display.levelThreshold == LevelThreshold::Uniform ? LevelThreshold::Uniform : LevelThreshold::ByDistance;
   return options;
 }
 
@@ -157,6 +159,8 @@ ScanPictures ScanPainter::draw(const FrameDescription& frame, const Camera& came
     stylerOf(frame.scans[i].points)
         .apply(frame.display.points, shown ? PointStyler::Part::ColourAndFilter : PointStyler::Part::Filter,
                frame.cameraFromWorld.centre(), layers[i].selection);
+    if (frame.display.levelThreshold == LevelThreshold::ByPoint)
+      cutByPoint(*frame.scans[i].points.store, camera, frame.cameraFromWorld, selectionOptions(frame), layers[i].selection);
     pictures.drawn += layers[i].selection.pointCount;
   }
   if (!shown) {

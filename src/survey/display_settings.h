@@ -18,6 +18,13 @@ enum class DensityLaw {
   PointsPerSquareMetre,  ///< Zhang (2020): D / ln(distance + 1)
 };
 
+/// Where a node's levels are cut.
+enum class LevelThreshold {
+  ByDistance,  ///< each node by its own distance from the eye
+  ByPoint,     ///< each point by its own distance (Zhang 2020), so that no node's border shows; fewer are drawn
+  Uniform,     ///< all nodes at the level that the nearest one wants (Zhang 2020, uniform threshold)
+};
+
 /// What of a frame is drawn, and how. Saved with the project; one struct for window and command line.
 struct DisplaySettings {
   bool imagePass = true;
@@ -28,6 +35,7 @@ struct DisplaySettings {
   double density = 1.0;        ///< slider, 0..1: fraction of the wanted density; 0 draws nothing
   DensityLaw densityLaw = DensityLaw::PointsPerPixel;
   double pointsPerSquareMetre = 150000.0;  ///< D of Zhang (2020)
+  LevelThreshold levelThreshold = LevelThreshold::ByDistance;
   double pointSize = 1.0;      ///< user's factor on the automatic point size
   bool roundPoints = false;
   PointStyle points;

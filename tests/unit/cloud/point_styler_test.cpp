@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the Alidade authors
 // SPDX-License-Identifier: BSD-3-Clause
 
+#include <algorithm>
 #include <cmath>
 
 #include <gmock/gmock.h>
@@ -107,6 +108,55 @@ TEST(PointStyler, FiltersAsAPointByPointTestDoes) {
       EXPECT_EQ(selection.pointCount, expectedCount(*store, style, share)) << share;
       EXPECT_GT(selection.pointCount, 0u);
     }
+}
+
+/// The points that a range draws.
+std::vector<std::uint64_t> drawnBy(const PointStore& store, const SelectedRange& range) {
+  std::vector<std::uint64_t> points(range.count);
+  std::memcpy(points.data(), range.styled ? range.styled : store.points().data() + range.first, range.count * sizeof(DisplayPoint));
+  return points;
+}
+
+TEST(PointStyler, WhatIsStyledCanBeCutPointByPoint) {
+  const auto store = richStore();
+  const Camera camera(*Intrinsics::fromParameters(CameraModel::Pinhole, 320, 240, {60, 60, 159.5, 119.5}));
+  const auto pose = RigidTransform::cameraLookingAt({402005, 5655003, 114}, {402007, 5655006, 112});
+  SelectionOptions options;
+  const Selection prefixes = select(*store, camera, pose, options);
+  options.threshold = LevelThreshold::ByPoint;
+  const Selection plain = select(*store, camera, pose, options);
+  ASSERT_LT(plain.pointCount, prefixes.pointCount);
+
+  // Every other class and the others: together all that is left without a style.
+  PointStyle even, odd, coloured;
+  for (std::size_t i = 0; i < 256; ++i) (i % 2 == 0 ? odd : even).hiddenClasses.set(i);
+  coloured.colourBy = ColourBy::Height;
+  std::uint64_t left = 0;
+  for (const PointStyle& style : {even, odd, coloured}) {
+    PointStyler styler({store, std::make_shared<const PointSummary>(summarise(*store, kCount)), 0});
+    Selection styled = prefixes;
+    styler.apply(style, kBoth, pose.centre(), styled);
+    Selection cut = styled;
+    cutByPoint(*store, camera, pose, options, cut);
+    if (style == coloured) {
+      EXPECT_EQ(cut.pointCount, plain.pointCount);
+    } else {
+      left += cut.pointCount;
+    }
+    // Some of the styled points, in their order and colour.
+    auto before = styled.ranges.begin();
+    for (const SelectedRange& range : cut.ranges) {
+      while (before->node != range.node) ++before;
+      const std::vector<std::uint64_t> all = drawnBy(*store, *before);
+      auto at = all.begin();
+      for (const std::uint64_t point : drawnBy(*store, range)) {
+        at = std::find(at, all.end(), point);
+        ASSERT_NE(at, all.end());
+        ++at;
+      }
+    }
+  }
+  EXPECT_EQ(left, plain.pointCount);
 }
 
 TEST(PointStyler, AFilteredPrefixGrowsAndNeverChangesWhatItHad) {

@@ -365,6 +365,21 @@ TEST(ProjectStore, ReadsAProjectOfVersionTwo) {
   EXPECT_TRUE(loaded->frames[1].cameraFromWorld) << "poses that were there stay";
 }
 
+TEST(ProjectStore, ReadsAProjectOfVersionThree) {
+  const TestFolder folder;
+  Project project = *loadProject(savedProject(folder));
+  project.display.levelThreshold = LevelThreshold::ByPoint;
+  const std::string path = folder / "points.alidade";
+  ASSERT_TRUE(saveProject(project, path));
+  EXPECT_EQ(loadProject(path)->display.levelThreshold, LevelThreshold::ByPoint);
+  tamper(path, "ALTER TABLE display DROP COLUMN level_threshold");
+  EXPECT_FALSE(loadProject(path));
+  tamper(path, "PRAGMA user_version = 3");
+  const auto loaded = loadProject(path);
+  ASSERT_TRUE(loaded) << loaded.error().text();
+  EXPECT_EQ(loaded->display.levelThreshold, LevelThreshold::ByDistance);
+}
+
 TEST(ProjectStore, RefusesEveryTruncation) {
   const TestFolder folder;
   const std::string whole = TestFolder::read(savedProject(folder));

@@ -52,6 +52,21 @@ std::size_t known(const DepthImage& depth) {
 
 }  // namespace
 
+TEST_F(Wall, PointByPointDrawsFewerAndStillWhatTheClassesLeave) {
+  lookFrom({-3.9, -1.5, 0});
+  const ScanPictures nodes = draw();
+  frame.display.levelThreshold = LevelThreshold::ByPoint;
+  const ScanPictures points = draw();
+  EXPECT_EQ(points.chosen, nodes.chosen);
+  EXPECT_LT(points.drawn, nodes.drawn);
+  EXPECT_EQ(known(points.depth), known(nodes.depth));
+  frame.display.points.hiddenClasses.set(6);
+  const ScanPictures near = draw();
+  frame.display.points.hiddenClasses.reset();
+  frame.display.points.hiddenClasses.set(2);
+  EXPECT_EQ(near.drawn + draw().drawn, points.drawn);
+}
+
 TEST_F(Wall, CountsAsDrawnWhatTheClassesLeave) {
   const ScanPictures all = draw();
   EXPECT_EQ(all.total, 200'000u);
