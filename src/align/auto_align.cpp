@@ -256,7 +256,7 @@ class Aligner {
     std::vector<Tried> tried;
     std::vector<glm::dvec3> world;
     for (const PoseCandidate& candidate : candidates) {
-      RigidTransform pose = candidate.cameraFromWorld;
+      RigidTransform pose = withLocked(candidate.cameraFromWorld, knowledgeOf(m_start, m_options));
       LevelFit fit;
       for (int round = 0; round < 2; ++round) {
         LevelFitOptions options;

@@ -186,6 +186,7 @@ Others tryOthers(const std::vector<EdgeSite>& sites, const PictureLevel& level, 
     other.rotation = glm::normalize(glm::dquat(1, 0.5 * turn) * pose.rotation);
     const glm::dvec3 shift(metres * normal(random), metres * normal(random), metres * normal(random));
     other.translation = -(other.rotation * (pose.centre() + shift));
+    other = withLocked(other, known);
   }
   std::vector<double> scores(poses.size());
   parallelFor(poses.size(), 16, [&](std::size_t first, std::size_t last, int) {

@@ -141,6 +141,17 @@ int PoseEstimate::counting() const {
   return static_cast<int>(std::count_if(weights.begin(), weights.end(), [](double w) { return w >= 0.5; }));
 }
 
+RigidTransform withLocked(const RigidTransform& cameraFromWorld, const PoseKnowledge& known) {
+  glm::dvec3 centre = cameraFromWorld.centre();
+  const glm::dvec3 knownCentre = known.cameraFromWorld.centre();
+  for (int i = 0; i < 3; ++i)
+    if (known.locked[i]) centre[i] = knownCentre[i];
+  RigidTransform held;
+  held.rotation = known.locked[3] && known.locked[4] && known.locked[5] ? known.cameraFromWorld.rotation : cameraFromWorld.rotation;
+  held.translation = -(held.rotation * centre);
+  return held;
+}
+
 std::optional<PoseEstimate> estimatePose(const Camera& camera, const RigidTransform& start, const std::vector<SeenPlace>& places,
                                          const PoseKnowledge& known) {
   PoseEstimate estimate;

@@ -43,6 +43,9 @@ struct PoseKnowledge {
   std::array<bool, 6> locked{};                     ///< centre E N H, rotation about the camera's x y z
 };
 
+/// The pose with what is locked as it is known. The attitude counts as locked about all three axes or about none.
+RigidTransform withLocked(const RigidTransform& cameraFromWorld, const PoseKnowledge& known);
+
 /// The pose that most of the places agree with, by reweighted least squares with Cauchy's weights from a pose nearby.
 /// Nothing where fewer than three blocks remain or the places leave something open.
 std::optional<PoseEstimate> estimatePose(const Camera& camera, const RigidTransform& start, const std::vector<SeenPlace>& places,

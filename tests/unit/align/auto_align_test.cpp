@@ -48,6 +48,18 @@ TEST_F(AutoAlign, FindsThePoseFromThreeDegreesAndThirtyCentimetresOff) {
   }
 }
 
+TEST_F(AutoAlign, ALockedPositionStays) {
+  RigidTransform turned = Room::pose();
+  turned.rotation = glm::angleAxis(0.03, glm::normalize(glm::dvec3(0.4, 1, 0.2))) * turned.rotation;
+  turned.translation = -(turned.rotation * Room::pose().centre());
+  AlignmentOptions options;
+  options.lockPosition = {true, true, true};
+  const auto summary = alignPicture(*s_scene, *s_photo, Room::camera(), turned, options);
+  ASSERT_TRUE(summary) << summary.error().text();
+  EXPECT_TRUE(summary->converged) << summary->report();
+  EXPECT_LT(glm::distance(summary->cameraFromWorld.centre(), turned.centre()), 1e-6);
+}
+
 TEST_F(AutoAlign, DoesNotBelieveAPictureOfSomethingElse) {
   // Upside down the room is another room with the same statistics.
   ColourImage turned(s_photo->width(), s_photo->height());

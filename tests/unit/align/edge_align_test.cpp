@@ -62,6 +62,20 @@ TEST(EdgeAlign, FindsThePoseFromAScanWithoutColours) {
   findsThePose(scene, 0.8);
 }
 
+TEST(EdgeAlign, WhatIsLockedStays) {
+  const ColourImage photo = Boxes::photo(Boxes::camera(), Boxes::pose());
+  RigidTransform turned = Boxes::pose();
+  turned.rotation = glm::angleAxis(0.03, glm::normalize(glm::dvec3(0.4, 1, 0.2))) * turned.rotation;
+  turned.translation = -(turned.rotation * Boxes::pose().centre());
+  AlignmentOptions options;
+  options.lockPosition = {true, true, true};
+  const auto summary = alignPicture(designed(), photo, Boxes::camera(), turned, options);
+  ASSERT_TRUE(summary) << summary.error().text();
+  EXPECT_TRUE(summary->converged) << summary->report();
+  EXPECT_LT(errorPx(summary->cameraFromWorld), 0.3);
+  EXPECT_LT(glm::distance(summary->cameraFromWorld.centre(), turned.centre()), 1e-6);
+}
+
 TEST(EdgeAlign, DoesNotBelieveAPictureOfSomethingElse) {
   const ColourImage photo = Boxes::photo(Boxes::camera(), Boxes::pose());
   ColourImage turned(photo.width(), photo.height());
