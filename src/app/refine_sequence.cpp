@@ -294,7 +294,8 @@ class Sequence {
       const auto beside = pixel ? camera.unproject(*pixel + kEdgePiecePx * key.alignment.levelScale * along) : std::nullopt;
       if (!beside) continue;
       const glm::dvec3 to = key.guess.inverse() * (*beside * here.z);
-      const bool isHeldOut = held > 0 && ++taken % held == 0;
+      ++taken;
+      const bool isHeldOut = held > 0 && taken % held == 0;
       n.edges.push_back({frame, place.world, to, place.pixel, sigma, isHeldOut, fmt::format("{} edge {}", n.frames[frame].name, taken)});
     }
   }
