@@ -216,7 +216,7 @@ Result<ColourImage> VideoDecoder::retrieveFrame(std::int64_t index) {
     return fail(decodeError(index, "The frame differs in size or kind from the first one"));
   if (frame.channels() != 3)
     return colourImageFrom({frame.data, frame.step[0], frame.cols, frame.rows, frame.channels(), 1});
-  ColourImage image(m_width, m_height);
+  ColourImage image(m_width, m_height, Uncleared{});
   cv::Mat into(m_height, m_width, CV_8UC4, image.data());
   cv::cvtColor(frame, into, cv::COLOR_BGR2RGBA);
   return image;

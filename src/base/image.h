@@ -3,9 +3,12 @@
 
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
+
+#include "base/pixel_memory.h"
 
 namespace alidade {
 
@@ -13,6 +16,9 @@ struct Rgba8 {
   std::uint8_t r = 0, g = 0, b = 0, a = 255;
   friend bool operator==(const Rgba8&, const Rgba8&) = default;
 };
+
+/// Says that all pixels will be written: clearing them before takes as long as many a pass over them.
+struct Uncleared {};
 
 /// A picture in memory, row by row from the top, no padding. Pixel (0,0) is the top-left one and
 /// its centre is at (0,0), as in OpenCV.
@@ -22,6 +28,12 @@ class Image {
   Image() = default;
   Image(int width, int height, T value = T{})
       : m_width(width), m_height(height), m_pixels(static_cast<std::size_t>(width) * height, value) {}
+  Image(int width, int height, Uncleared) : m_width(width), m_height(height), m_pixels(static_cast<std::size_t>(width) * height) {}
+  Image(const Image& other) : Image(other.m_width, other.m_height, Uncleared{}) { std::copy_n(other.data(), size(), data()); }
+  Image(Image&&) = default;
+  Image& operator=(const Image& other) { return *this = Image(other); }
+  Image& operator=(Image&&) = default;
+  ~Image() = default;
 
   int width() const { return m_width; }
   int height() const { return m_height; }
@@ -40,7 +52,7 @@ class Image {
  private:
   int m_width = 0;
   int m_height = 0;
-  std::vector<T> m_pixels;
+  std::vector<T, PixelAllocator<T>> m_pixels;
 };
 
 using ColourImage = Image<Rgba8>;

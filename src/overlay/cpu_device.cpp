@@ -368,9 +368,10 @@ Result<OverlayDevice::Output> CpuOverlayDevice::draw(const DrawList& list) {
   if (!fits(list.scanDepth) || !fits(list.pointColour))
     return fail("The scan's pictures are not of the result's size", name(),
                 "Draw them for the scaled camera");
-  Output output{ColourImage(list.width, list.height), DepthImage(list.width, list.height),
-                IdImage(list.width, list.height), Image<std::uint8_t>(list.width, list.height), IdImage()};
-  if (drawsHiddenLayer(list)) output.hiddenElement = IdImage(list.width, list.height);
+  const int width = list.width, height = list.height;
+  Output output{ColourImage(width, height, Uncleared{}), DepthImage(width, height, Uncleared{}), IdImage(width, height, Uncleared{}),
+                Image<std::uint8_t>(width, height, Uncleared{}), IdImage()};
+  if (drawsHiddenLayer(list)) output.hiddenElement = IdImage(width, height, Uncleared{});
   setUp(list, output);
   drawFaces(list);
   composeTiles(list, output);

@@ -37,7 +37,7 @@ std::vector<Box> boxes(int from, int to) {
 }  // namespace
 
 ColourImage shrunk(const ColourImage& picture, int width, int height) {
-  ColourImage result(width, height);
+  ColourImage result(width, height, Uncleared{});
   const std::vector<Box> columns = boxes(picture.width(), width), rows = boxes(picture.height(), height);
   parallelFor(static_cast<std::size_t>(height), 8, [&](std::size_t firstRow, std::size_t lastRow, int) {
     std::vector<float> sums(4 * static_cast<std::size_t>(picture.width()));

@@ -284,7 +284,7 @@ Result<void> checkPictureComplete(std::span<const std::byte> bytes, const std::s
 }
 
 ColourImage colourImageFrom(const RawPicture& raw) {
-  ColourImage image(raw.width, raw.height);
+  ColourImage image(raw.width, raw.height, Uncleared{});
   const auto convert = [&](auto sample, auto&& narrow) {
     using Sample = decltype(sample);
     for (int y = 0; y < raw.height; ++y) {

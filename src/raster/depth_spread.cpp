@@ -28,7 +28,7 @@ inline float between(float own, float beside, float above, float across) {
 
 DepthImage spreadDepth(const DepthImage& half) {
   const int width = half.width(), height = half.height();
-  DepthImage full(2 * width, 2 * height);
+  DepthImage full(2 * width, 2 * height, Uncleared{});
   parallelFor(static_cast<std::size_t>(height), 16, [&](std::size_t first, std::size_t last, int) {
     // A border of one pixel on each side spares the checks.
     std::vector<float> rows(3 * static_cast<std::size_t>(width + 2)), left(static_cast<std::size_t>(width)), right(left);

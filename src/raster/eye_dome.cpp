@@ -113,7 +113,7 @@ void shadeRows(const DepthImage& depth, const EyeDomeOptions& options, const Use
 }  // namespace
 
 Image<float> eyeDomeShade(const DepthImage& depth, const EyeDomeOptions& options) {
-  Image<float> shade(depth.width(), depth.height());
+  Image<float> shade(depth.width(), depth.height(), Uncleared{});
   shadeRows(depth, options,
             [&](int y, const float* row) { std::copy_n(row, depth.width(), shade.row(y)); });
   return shade;

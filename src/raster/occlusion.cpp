@@ -106,7 +106,7 @@ OcclusionDepth occlusionDepth(const Occluders& occluders, const Camera& camera,
     for (std::size_t i = 0; i < inverse.size(); ++i)
       inverse.data()[i] = std::max(inverse.data()[i], surfaces.data()[i]);
   }
-  occlusion.depth = DepthImage(camera.width(), camera.height());
+  occlusion.depth = DepthImage(camera.width(), camera.height(), Uncleared{});
   parallelFor(occlusion.depth.size(), 1 << 16, [&](std::size_t first, std::size_t last, int) {
     for (std::size_t i = first; i < last; ++i) {
       const float w = inverse.data()[i];
