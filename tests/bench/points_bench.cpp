@@ -9,6 +9,7 @@
 #include <benchmark/benchmark.h>
 
 #include "bench/site.h"
+#include "bench/street.h"
 #include "cloud/point_store.h"
 #include "cloud/selection.h"
 #include "overlay/vulkan_splatter.h"
@@ -16,7 +17,6 @@
 #include "raster/occluder_mesh.h"
 #include "raster/occlusion.h"
 #include "raster/splatter.h"
-#include "unit/raster/occlusion_score.h"
 
 namespace alidade {
 namespace {
@@ -131,43 +131,8 @@ void occlusion_5M(benchmark::State& state) {
   state.SetItemsProcessed(static_cast<std::int64_t>(state.iterations() * layers[0].selection.pointCount));
 }
 
-/// The street of the tests, scanned from two stations whose returns lie in grids, with the truth of one
-/// 1080p frame: rows that draw it also say how right they are, beyond 2 px of depth edges.
-struct ScannedStreet {
-  std::vector<Station> stations{2};
-  PointBatch batch;
-  std::shared_ptr<const PointStore> store;
-  Camera camera = test::streetCamera(1920, 1080);
-  DepthImage truth;
-};
-
-const ScannedStreet& streetOf(std::size_t points) {
-  static std::map<std::size_t, ScannedStreet> made;
-  auto [found, isNew] = made.try_emplace(points);
-  ScannedStreet& street = found->second;
-  if (!isNew) return street;
-  const test::StreetScene scene;
-  const glm::dvec3 places[] = {{0.5, -1.0, 1.8}, {18, 2.5, 1.8}};
-  for (std::uint16_t s = 0; s < 2; ++s) {
-    street.stations[s].worldFromScanner.translation = places[s];
-    scene.scan(places[s], points / 2, 0.003, s + 1u, street.batch, 0.1, s);
-  }
-  PointStoreBuilder builder;
-  builder.add(street.batch);
-  street.store = *builder.build(Progress());
-  street.truth = test::truthOf(scene, street.camera, test::kStreetView);
-  return street;
-}
-
-void report(benchmark::State& state, const ScannedStreet& street, const DepthImage& depth, double cpuStart) {
-  const test::Score score = test::scoreOf(street.truth, depth, true);
-  state.counters["precision"] = score.precision;
-  state.counters["recall"] = score.recall;
-  state.counters["cpu_ms"] = 1e3 * (cpuSeconds() - cpuStart) / static_cast<double>(state.iterations());
-}
-
 void occlusionStructured(benchmark::State& state, std::size_t points) {
-  const ScannedStreet& street = streetOf(points);
+  const test::ScannedStreet& street = test::streetOf(points);
   OccluderMeshBuilder builder(street.stations);
   builder.add(street.batch);
   const auto mesh = std::make_shared<OccluderMesh>(builder.build());
@@ -183,7 +148,7 @@ void occlusion_structured_5M(benchmark::State& state) {
 }
 
 void occluder_mesh_build_5M(benchmark::State& state) {
-  const ScannedStreet& street = streetOf(5'000'000);
+  const test::ScannedStreet& street = test::streetOf(5'000'000);
   for (auto _ : state) {
     OccluderMeshBuilder builder(street.stations);
     builder.add(street.batch);
@@ -193,7 +158,7 @@ void occluder_mesh_build_5M(benchmark::State& state) {
 
 /// The same returns without their grid.
 void occlusion_street(benchmark::State& state) {
-  const ScannedStreet& street = streetOf(static_cast<std::size_t>(state.range(0)) * 100'000);
+  const test::ScannedStreet& street = test::streetOf(static_cast<std::size_t>(state.range(0)) * 100'000);
   const std::vector<SplatLayer> layers{{street.store, selectAll(*street.store, street.camera, test::kStreetView)}};
   OcclusionDepth occlusion;
   const double start = cpuSeconds();
@@ -203,7 +168,7 @@ void occlusion_street(benchmark::State& state) {
 }
 
 void occlusion_squares_5M(benchmark::State& state) {
-  const ScannedStreet& street = streetOf(5'000'000);
+  const test::ScannedStreet& street = test::streetOf(5'000'000);
   const std::vector<SplatLayer> layers{{street.store, selectAll(*street.store, street.camera, test::kStreetView)}};
   OcclusionDepth occlusion;
   const double start = cpuSeconds();
@@ -212,7 +177,7 @@ void occlusion_squares_5M(benchmark::State& state) {
 }
 
 void eye_dome_1080p(benchmark::State& state) {
-  const ScannedStreet& street = streetOf(100'000);
+  const test::ScannedStreet& street = test::streetOf(100'000);
   ColourImage colour(1920, 1080, Rgba8{200, 180, 160, 255});
   const double start = cpuSeconds();
   for (auto _ : state) applyEyeDome(street.truth, {}, colour);
