@@ -93,6 +93,23 @@ TEST_F(PointsInWindow, TheBoxGoesAroundTheSelectedElementAndCutsTheScan) {
   EXPECT_LT(glm::length(box.size - (bounds.size() + 1.0)), 1e-9);
 }
 
+TEST_F(PointsInWindow, WhatADistanceIsTakenOfDecidesHowManyFarPointsShow) {
+  QComboBox* thinned = comboNamed(panel, "Thinned");
+  ASSERT_NE(thinned, nullptr);
+  const auto drawn = [&](LevelThreshold threshold) -> std::uint64_t {
+    thinned->setCurrentIndex(static_cast<int>(threshold));
+    EXPECT_TRUE(settle());
+    EXPECT_EQ(session().display().levelThreshold, threshold);
+    return session().rendered()->frame.picture.pointsDrawn;
+  };
+  // A part counts as near as its nearest point, and the nearest part decides for all: each shows the other's points and more.
+  const std::uint64_t byPoint = drawn(LevelThreshold::ByPoint), byPart = drawn(LevelThreshold::ByDistance),
+                      alike = drawn(LevelThreshold::Uniform);
+  EXPECT_GT(byPoint, 1000u);
+  EXPECT_LT(byPoint, byPart);
+  EXPECT_LT(byPart, alike);
+}
+
 TEST_F(PointsInWindow, DraggingTheHistogramSetsTheRange) {
   comboNamed(panel, "Colour by")->setCurrentIndex(static_cast<int>(ColourBy::Height));
   ASSERT_TRUE(settle());
