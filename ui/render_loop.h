@@ -15,7 +15,7 @@
 
 #include "app/jobs.h"
 #include "app/workspace.h"
-#include "overlay/frame_pacer.h"
+#include "cloud/frame_pacer.h"
 
 namespace alidade {
 

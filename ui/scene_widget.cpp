@@ -88,7 +88,8 @@ void SceneWidget::updateAll() {
   std::vector<ScanPoints> clouds;
   for (const auto& [id, parts] : data.scans)
     for (const ScanLayer& part : parts) clouds.push_back(part.points);
-  m_view->setClouds(clouds, m_session.display().density, m_session.display().pointSize, m_session.display().points);
+  m_view->setDisplay(m_session.display());
+  m_view->setClouds(clouds);
   m_view->setStakePoints(m_session.project()->stakePoints);
   updateDesigns();
   updateFrames();
@@ -129,7 +130,7 @@ void SceneWidget::updateFrames() {
 
 void SceneWidget::updateCloudDisplay() {
   if (!m_shown) return;
-  m_view->setCloudDisplay(m_session.display().density, m_session.display().pointSize, m_session.display().points);
+  m_view->setDisplay(m_session.display());
   refresh();
 }
 
@@ -159,6 +160,7 @@ std::optional<ScenePick> SceneWidget::pickAt(const QPointF& position) const {
 }
 
 void SceneWidget::stopMovingSoon() {
+  m_view->setPace(m_session.pace());
   m_view->setMoving(true);
   m_still.start();
 }

@@ -4,32 +4,17 @@
 #include "overlay/scan_painter.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <vector>
 
 #include "overlay/scan_rows.h"
 #include "raster/depth_spread.h"
-#include "raster/eye_dome.h"
 #include "raster/occlusion.h"
-#include "raster/splatter.h"
 
 namespace alidade {
 
 namespace {
-
-SelectionOptions selectionOptions(const FrameDescription& frame) {
-  const DisplaySettings& display = frame.display;
-  SelectionOptions options;
-  options.pointBudget = frame.pointBudget;
-  options.density = display.density;
-  options.law = display.densityLaw;
-  options.pointsPerSquareMetre = display.pointsPerSquareMetre;
-  // By point only what is drawn is cut, once it is styled.
-  options.threshold = display.levelThreshold == LevelThreshold::Uniform ? LevelThreshold::Uniform : LevelThreshold::ByDistance;
-  return options;
-}
 
 /// Where a budget holds, what hides is judged by as many points as it allows, evenly spaced on screen.
 SelectionOptions judgingOptions(std::uint64_t budget) {
@@ -39,40 +24,17 @@ SelectionOptions judgingOptions(std::uint64_t budget) {
   return options;
 }
 
-double millisecondsNow() {
-  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now().time_since_epoch()).count();
-}
-
 std::vector<std::shared_ptr<const PointStore>> storesOf(const std::vector<ScanLayer>& scans) {
   std::vector<std::shared_ptr<const PointStore>> stores;
   for (const ScanLayer& scan : scans) stores.push_back(scan.points.store);
   return stores;
 }
 
-SplatOptions splatOptions(const FrameDescription& frame) {
-  const DisplaySettings& display = frame.display;
-  SplatOptions options;
-  options.colour = true;
-  options.pointSize = display.pointSize;
-  options.round = display.roundPoints;
-  if (display.points.sizeLaw == PointSizeLaw::Screen)
-    for (const ScanLayer& scan : frame.scans)
-      options.worldSizeM = std::max(options.worldSizeM, scan.points.store->medianSpacing());
-  options.fixedSize = display.points.sizeLaw == PointSizeLaw::Fixed;
-  return options;
-}
-
 }  // namespace
 
-ScanPainter::ScanPainter() : ScanPainter(millisecondsNow) {}
-ScanPainter::ScanPainter(Clock clock) : m_clock(std::move(clock)) {}
+ScanPainter::ScanPainter() = default;
+ScanPainter::ScanPainter(PointPainter::Clock clock) : m_points(std::move(clock)) {}
 ScanPainter::~ScanPainter() = default;
-
-PointStyler& ScanPainter::stylerOf(const ScanPoints& points) {
-  auto& styler = m_stylers[points.store.get()];
-  if (!styler) styler = std::make_unique<PointStyler>(points);
-  return *styler;
-}
 
 /// The density slider chooses which points are *shown*; what hides the design is judged with every point
 /// in view that the style does not filter out, so that thinning the display never changes what is visible.
@@ -91,7 +53,7 @@ DepthImage ScanPainter::occlusion(const FrameDescription& frame, const std::vect
   for (std::size_t i = 0; i < scans.size(); ++i) {
     const ScanLayer& scan = scans[i];
     Selection all = few.empty() ? selectAll(*scan.points.store, camera, frame.cameraFromWorld) : std::move(few[i]);
-    stylerOf(scan.points).apply(style, PointStyler::Part::Filter, frame.cameraFromWorld.centre(), all);
+    m_points.stylerOf(scan.points).apply(style, PointStyler::Part::Filter, frame.cameraFromWorld.centre(), all);
     judged += all.pointCount;
     layers.push_back({scan.points.store, std::move(all)});
     if (scan.surface && !style.filters()) surfaces.meshes.push_back(scan.surface);
@@ -124,55 +86,23 @@ DepthImage ScanPainter::quickOcclusion(const FrameDescription& frame, const Came
   return spreadDepth(depth);
 }
 
-/// While the view moves, what was chosen for one frame may serve the next ones, too: at the border of the view
-/// points are then missing, and distances are a little off.
-const std::vector<Selection>& ScanPainter::chosenFor(const FrameDescription& frame, const Camera& camera) {
-  std::vector<std::shared_ptr<const PointStore>> stores = storesOf(frame.scans);
-  const double now = m_clock();
-  const bool fresh = now - m_chosenAt < frame.selectionAgeMs;
-  if (fresh && stores == m_stores) return m_chosen;
-  m_stores = std::move(stores);
-  m_chosen = select(m_stores, camera, frame.cameraFromWorld, selectionOptions(frame));
-  m_chosenAt = now;
-  return m_chosen;
-}
-
 ScanPictures ScanPainter::draw(const FrameDescription& frame, const Camera& camera, SplatDevice* device) {
-  std::erase_if(m_stylers, [&](const auto& entry) {
-    return std::none_of(frame.scans.begin(), frame.scans.end(),
-                        [&](const ScanLayer& scan) { return scan.points.store.get() == entry.first; });
-  });
   ScanPictures pictures;
-  std::vector<SplatLayer> layers;
-  const std::vector<Selection>& chosen = chosenFor(frame, camera);
-  const bool shown = frame.display.pointPass;
-  for (std::size_t i = 0; i < frame.scans.size(); ++i) {
-    const ScanLayer& scan = frame.scans[i];
-    layers.push_back({scan.points.store, chosen[i]});
+  std::vector<ScanPoints> scans;
+  for (const ScanLayer& scan : frame.scans) {
+    scans.push_back(scan.points);
     pictures.total += scan.sampleOf > 0 ? scan.sampleOf : scan.points.store->pointCount();
-    pictures.chosen += chosen[i].pointCount;
   }
   // Also with the depth pass off: the read-out under the cursor stands on it.
   const bool isQuick = frame.playing && camera.width() % 2 == 0 && camera.height() % 2 == 0;
   pictures.depth = isQuick ? quickOcclusion(frame, camera, pictures.judged) : occlusion(frame, frame.scans, camera, pictures.judged);
-  for (std::size_t i = 0; i < layers.size(); ++i) {
-    stylerOf(frame.scans[i].points)
-        .apply(frame.display.points, shown ? PointStyler::Part::ColourAndFilter : PointStyler::Part::Filter,
-               frame.cameraFromWorld.centre(), layers[i].selection);
-    if (frame.display.levelThreshold == LevelThreshold::ByPoint)
-      cutByPoint(*frame.scans[i].points.store, camera, frame.cameraFromWorld, selectionOptions(frame), layers[i].selection);
-    pictures.drawn += layers[i].selection.pointCount;
-  }
-  if (!shown) {
-    moveToRows(camera, frame.shutter, pictures.depth, pictures.colour);
-    return pictures;
-  }
-  SplatOptions options = splatOptions(frame);
-  options.device = device;
-  SplatImages splats = splat(layers, camera, frame.cameraFromWorld, options);
-  if (frame.display.points.eyeDome)
-    applyEyeDome(splats.depth, {frame.display.points.eyeDomeStrength, 1}, splats.colour);
-  pictures.colour = std::move(splats.colour);
+  const bool shown = frame.display.pointPass;
+  const PointView view{camera, frame.cameraFromWorld, frame.pointBudget, frame.selectionAgeMs};
+  const ChosenPoints points =
+      m_points.choose(scans, frame.display, view, shown ? PointStyler::Part::ColourAndFilter : PointStyler::Part::Filter);
+  pictures.chosen = points.chosen;
+  pictures.drawn = points.drawn;
+  if (shown) pictures.colour = std::move(m_points.draw(points, frame.display, view, device).colour);
   moveToRows(camera, frame.shutter, pictures.depth, pictures.colour);
   return pictures;
 }

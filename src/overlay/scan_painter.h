@@ -4,14 +4,12 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
-#include <map>
-#include <memory>
 #include <vector>
 
 #include "base/image.h"
 #include "camera/camera.h"
 #include "overlay/frame_description.h"
+#include "raster/point_painter.h"
 #include "raster/splat_device.h"
 
 namespace alidade {
@@ -30,27 +28,19 @@ struct ScanPictures {
 /// styled points between frames. One user at a time.
 class ScanPainter {
  public:
-  using Clock = std::function<double()>;  ///< milliseconds
   ScanPainter();
-  explicit ScanPainter(Clock clock);
+  explicit ScanPainter(PointPainter::Clock clock);
   ~ScanPainter();
 
   /// `device` draws the shown points in the processor's place where it is given.
   ScanPictures draw(const FrameDescription& frame, const Camera& camera, SplatDevice* device = nullptr);
 
  private:
-  PointStyler& stylerOf(const ScanPoints& points);
   DepthImage occlusion(const FrameDescription& frame, const std::vector<ScanLayer>& scans, const Camera& camera,
                        std::uint64_t& judged);
   DepthImage quickOcclusion(const FrameDescription& frame, const Camera& camera, std::uint64_t& judged);
-  const std::vector<Selection>& chosenFor(const FrameDescription& frame, const Camera& camera);
 
-  Clock m_clock;
-  std::map<const PointStore*, std::unique_ptr<PointStyler>> m_stylers;
-  /// The points chosen for a frame, and for which scans.
-  std::vector<std::shared_ptr<const PointStore>> m_stores;
-  std::vector<Selection> m_chosen;
-  double m_chosenAt = 0;
+  PointPainter m_points;
 };
 
 }  // namespace alidade

@@ -3,54 +3,55 @@
 
 #pragma once
 
-#include <memory>
+#include <optional>
 #include <vector>
 
 #include <vtkRenderer.h>
+#include <vtkSmartPointer.h>
 
-#include "cloud/point_styler.h"
+#include "raster/point_painter.h"
 #include "scene/layer_hit.h"
-#include "scene/polydata.h"
+#include "scene/picture_prop.h"
 
 namespace alidade {
 
-/// The scans of the 3D view: two clouds of vertices, a coarse one that is always drawn and a fine
-/// one that is drawn when the view stands still. Which points is decided by their continuous level
-/// alone, so that the picture is evenly thinned and a coarser one is part of a finer one.
+/// The scans of the 3D view, drawn by the point engine as the picture's are: chosen for each view anew, as dense as the screen
+/// can show, and handed to VTK as a picture with depths.
 class CloudLayer {
  public:
   explicit CloudLayer(vtkRenderer* renderer);
 
   void set(const std::vector<ScanPoints>& clouds);
-  /// Picks the points: density 0..1 of min(all, budget), then styled. Call after set() and when the origin moves.
-  void build(const glm::dvec3& origin, double density, std::uint64_t budget, const PointStyle& style);
-  void setPointSize(double pixels);
-  void setMoving(bool moving);
+  void setDisplay(const DisplaySettings& display);
+  /// Of footprints and of the smallest point: what a logical pixel has in device pixels.
+  void setPixelRatio(double ratio);
+
+  /// Makes the picture for this view; what was made is kept while nothing changes. Of a moving view at most `budget` points (0: all).
+  void draw(const ViewCamera& camera, std::uint64_t budget);
 
   Bounds bounds() const;
-  std::uint64_t drawnCount() const { return m_points.size(); }
-  /// The nearest point within `radiusPx` of the cursor.
-  std::optional<LayerHit> hit(const ViewCamera& camera, const glm::dvec2& px, double radiusPx) const;
+  /// Points that a still picture of this view shows.
+  std::uint64_t countFor(const ViewCamera& camera);
+  /// Points of the last picture.
+  std::uint64_t drawnCount() const { return m_points.drawn; }
+  /// The nearest of the points that a picture shows, within `radiusPx` of the cursor.
+  std::optional<LayerHit> hit(const ViewCamera& camera, const glm::dvec2& px, double radiusPx);
 
  private:
-  struct Cloud {
-    ScanPoints points;
-    std::unique_ptr<PointStyler> styler;
+  struct View {
+    ViewCamera camera;
+    std::uint64_t budget = 0;
+    friend bool operator==(const View&, const View&) = default;
   };
-  struct Range {
-    std::size_t firstDrawn;  ///< into m_points
-    std::size_t cloud;
-    std::uint32_t node;
-  };
-  void addPoints(double fromShare, double toShare, const PointStyle& style);
-  glm::dvec3 positionOf(std::size_t drawn) const;
+  void choose(const View& view);
 
-  std::vector<Cloud> m_clouds;
-  glm::dvec3 m_origin{0};
-  std::vector<glm::vec3> m_points;  ///< drawn ones, relative to m_origin; coarse ones first
-  std::vector<glm::u8vec3> m_colours;
-  std::vector<Range> m_ranges;  ///< ascending by firstDrawn
-  LitActor m_coarse, m_fine;
+  std::vector<ScanPoints> m_clouds;
+  DisplaySettings m_display;
+  double m_ratio = 1;
+  PointPainter m_painter;
+  ChosenPoints m_points;
+  std::optional<View> m_chosenFor, m_drawnFor;  ///< nothing: neither holds any more
+  vtkSmartPointer<PictureProp> m_picture;
 };
 
 }  // namespace alidade

@@ -23,8 +23,6 @@ namespace {
 
 // Neutral and dark: colours of scans and designs are judged against it.
 constexpr double kBackground[3] = {0.155, 0.160, 0.170};
-constexpr std::uint64_t kSoftwareBudget = 1'000'000;
-constexpr std::uint64_t kHardwareBudget = 8'000'000;
 // Data farther from the local origin than this moves the origin: floats step by 0.06 mm at 1 km.
 constexpr double kOriginReach = 1000.0;
 constexpr double kPointRadiusPx = 4.0;
@@ -38,7 +36,6 @@ constexpr double kNearestPlane = 1e-5;  // of the farthest plane
 struct SiteView::Impl {
   GlTarget target;
   vtkSmartPointer<vtkRenderer> renderer = vtkSmartPointer<vtkRenderer>::New();
-  PointStyle style;
   CloudLayer clouds{renderer};
   SceneDesignLayer designs{renderer};
   FrameLayer frames{renderer};
@@ -48,19 +45,16 @@ struct SiteView::Impl {
   glm::dvec3 origin{0};
   bool hasOrigin = false;
   bool touched = false;  ///< the user has moved the view: new data no longer does
-  double density = 1, pointSize = 1, ratio = 1;
-  std::optional<std::uint64_t> budget;
+  bool moving = false;
+  double pointSize = 1, ratio = 1;
+  FramePace pace;
+  FramePacer pacer;
   glm::dvec3 pivot{0};  ///< what was under the cursor when the drag began
 
   Impl() {
     renderer->SetBackground(kBackground[0], kBackground[1], kBackground[2]);
     target.window()->AddRenderer(renderer);
     applyScale();
-  }
-
-  std::uint64_t pointBudget() const {
-    if (budget) return *budget;
-    return target.attached() && !target.isSoftware() ? kHardwareBudget : kSoftwareBudget;
   }
 
   Bounds siteBounds() const {
@@ -86,7 +80,6 @@ struct SiteView::Impl {
     return work;
   }
 
-  void buildClouds() { clouds.build(origin, density, pointBudget(), style); }
   void buildFrames() {
     const Bounds site = siteBounds();
     frames.build(origin, site.empty() ? frames.bounds().diagonal() : site.diagonal());
@@ -100,7 +93,6 @@ struct SiteView::Impl {
     if (!hasOrigin || glm::length(all.centre() - origin) > reach) {
       origin = glm::round(all.centre());
       hasOrigin = true;
-      buildClouds();
       designs.build(origin);
       stakes.build(origin);
     }
@@ -113,7 +105,7 @@ struct SiteView::Impl {
   }
 
   void applyScale() {
-    clouds.setPointSize(pointSize * 1.5 * ratio);
+    clouds.setPixelRatio(ratio);
     designs.setLineScale(ratio);
     frames.setLineScale(ratio);
     stakes.setScale(ratio);
@@ -140,7 +132,7 @@ struct SiteView::Impl {
     vtk->SetClippingRange(std::clamp(nearest, least, 0.9 * farthest), farthest);
   }
 
-  std::optional<LayerHit> hit(const glm::dvec2& px) const {
+  std::optional<LayerHit> hit(const glm::dvec2& px) {
     std::optional<LayerHit> best = designs.hit(camera, px);
     const double radius = std::max(kPointRadiusPx * ratio, 0.75 * pointSize * ratio);
     if (auto point = clouds.hit(camera, px, radius); point && (!best || point->depth < best->depth)) best = point;
@@ -154,7 +146,7 @@ struct SiteView::Impl {
   }
 
   /// What is under the cursor; else the point of its ray as deep as the last pivot.
-  glm::dvec3 grasp(const glm::dvec2& px) const {
+  glm::dvec3 grasp(const glm::dvec2& px) {
     if (const auto found = hit(px)) return found->pick.world;
     const ViewRay ray = camera.rayThrough(px);
     double depth = camera.depthOf(pivot);
@@ -169,9 +161,7 @@ SiteView::SiteView() : m_impl(std::make_unique<Impl>()) {}
 SiteView::~SiteView() = default;
 
 void SiteView::attach(const SceneContext& context) {
-  const std::uint64_t before = m_impl->pointBudget();
   m_impl->target.attach(context);
-  if (m_impl->pointBudget() != before) m_impl->buildClouds();
 }
 
 void SiteView::release() {
@@ -181,34 +171,26 @@ void SiteView::release() {
 void SiteView::paint(unsigned framebuffer) {
   Impl& d = *m_impl;
   if (!d.target.attached()) return;
+  const std::uint64_t budget = d.pacer.begin(d.moving ? d.pace.frameTimeMs : 0);
   d.applyCamera();
+  d.clouds.draw(d.camera, budget);
   d.stakes.placeLabels(d.camera);
   d.target.paint(framebuffer, d.camera.width(), d.camera.height());
+  d.pacer.end(d.clouds.drawnCount());
 }
 
-void SiteView::setClouds(const std::vector<ScanPoints>& clouds, double density, double pointSize,
-                         const PointStyle& style) {
+void SiteView::setClouds(const std::vector<ScanPoints>& clouds) {
   m_impl->clouds.set(clouds);
-  m_impl->style = style;
-  m_impl->density = density;
-  m_impl->pointSize = pointSize;
-  m_impl->buildClouds();
   m_impl->settle(m_impl->clouds.bounds());
-  m_impl->applyScale();
 }
 
-void SiteView::setCloudDisplay(double density, double pointSize, const PointStyle& style) {
-  const bool samePoints = density == m_impl->density && style == m_impl->style;
-  m_impl->style = style;
-  m_impl->density = density;
-  m_impl->pointSize = pointSize;
-  if (!samePoints) m_impl->buildClouds();
-  m_impl->applyScale();
+void SiteView::setDisplay(const DisplaySettings& display) {
+  m_impl->pointSize = display.pointSize;
+  m_impl->clouds.setDisplay(display);
 }
 
-void SiteView::setPointBudget(std::uint64_t points) {
-  m_impl->budget = points;
-  m_impl->buildClouds();
+void SiteView::setPace(const FramePace& pace) {
+  m_impl->pace = pace;
 }
 
 void SiteView::setDesigns(const std::vector<SceneDesign>& designs) {
@@ -249,7 +231,7 @@ void SiteView::resize(int widthPx, int heightPx, double devicePixelRatio) {
 }
 
 void SiteView::setMoving(bool moving) {
-  m_impl->clouds.setMoving(moving);
+  m_impl->moving = moving;
 }
 
 void SiteView::fitAll() {
@@ -303,6 +285,10 @@ std::optional<ScenePick> SiteView::pick(const glm::dvec2& px) const {
 
 std::optional<glm::dvec3> SiteView::project(const glm::dvec3& world) const {
   return m_impl->camera.project(world);
+}
+
+std::uint64_t SiteView::stillPointCount() const {
+  return m_impl->clouds.countFor(m_impl->camera);
 }
 
 std::uint64_t SiteView::drawnPointCount() const {

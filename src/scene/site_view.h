@@ -13,10 +13,12 @@
 #include <glm/glm.hpp>
 
 #include "camera/camera.h"
+#include "cloud/frame_pacer.h"
 #include "cloud/point_styler.h"
 #include "geometry/bounds.h"
 #include "geometry/rigid_transform.h"
 #include "survey/design_model.h"
+#include "survey/display_settings.h"
 #include "survey/project.h"
 
 namespace alidade {
@@ -48,8 +50,8 @@ struct SceneContext {
   std::function<bool()> isCurrent;
 };
 
-/// The site in 3D: scan, design, stake points, camera frusta and trajectory. VTK inside, no Qt, and
-/// no VTK header outside this folder. Everything is drawn in float relative to a local origin near
+/// The site in 3D: scan, design, stake points, camera frusta and trajectory. VTK inside, but for the scan's points, which the
+/// point engine draws; no Qt, and no VTK header outside this folder. Everything is drawn in float relative to a local origin near
 /// the data; positions in and out are world doubles. Not thread-safe.
 ///
 /// The widget (a QOpenGLWidget; core profile 3.2, 24 bit depth, no samples) calls
@@ -70,13 +72,11 @@ class SiteView {
   /// Draws into this framebuffer object of the current context and leaves its alpha at 1.
   void paint(unsigned framebuffer);
 
-  /// `density` 0..1 is the share of the points that may be drawn: of all, or of the point budget
-  /// where there are more. A coarser picture is a subset of a finer one.
-  void setClouds(const std::vector<ScanPoints>& clouds, double density, double pointSize, const PointStyle& style = {});
-  /// The same clouds at another density, size or style; cheap while only the size changes.
-  void setCloudDisplay(double density, double pointSize, const PointStyle& style = {});
-  /// Points drawn at density 1; by default 1 M, which software OpenGL draws in a quarter of a second.
-  void setPointBudget(std::uint64_t points);
+  void setClouds(const std::vector<ScanPoints>& clouds);
+  /// How the points are drawn: the same density, size and style as over the picture.
+  void setDisplay(const DisplaySettings& display);
+  /// How quick the view is while it moves; the still one shows all that the density asks for.
+  void setPace(const FramePace& pace);
   void setDesigns(const std::vector<SceneDesign>& designs);
   void setStakePoints(const std::vector<StakePoint>& points);
   /// All posed frames; a few hundred frusta at most are drawn, the trajectory goes through all.
@@ -87,7 +87,7 @@ class SiteView {
 
   /// Device pixels; the ratio scales lines, markers and labels.
   void resize(int widthPx, int heightPx, double devicePixelRatio);
-  /// While true a coarse tenth of the points is drawn, so that dragging stays fluid. Set it false
+  /// While true as many points are drawn as keep the pace, so that dragging stays fluid. Set it false
   /// when the mouse is released and paint again.
   void setMoving(bool moving);
   /// Shows what the work is about: design, stake-out points and cameras; the scan where there is no design.
@@ -104,7 +104,9 @@ class SiteView {
   std::optional<ScenePick> pick(const glm::dvec2& px) const;
   /// Device pixel of a world point and its depth in metres; nothing behind the eye.
   std::optional<glm::dvec3> project(const glm::dvec3& world) const;
-  /// Points that the next still picture shows.
+  /// Points that a still picture of this view shows.
+  std::uint64_t stillPointCount() const;
+  /// Points of the last picture.
   std::uint64_t drawnPointCount() const;
 
  private:

@@ -56,6 +56,21 @@ std::optional<glm::dvec3> ViewCamera::project(const glm::dvec3& world) const {
   return glm::dvec3(0.5 * m_width + f * inView.x / depth, 0.5 * m_height - f * inView.y / depth, depth);
 }
 
+Camera ViewCamera::pinhole() const {
+  Intrinsics k;
+  k.width = m_width;
+  k.height = m_height;
+  k.fx = k.fy = focalPx();
+  k.cx = 0.5 * m_width - 0.5;
+  k.cy = 0.5 * m_height - 0.5;
+  return Camera(k);
+}
+
+RigidTransform ViewCamera::cameraFromWorld() const {
+  const glm::dmat3 rotation = glm::transpose(glm::dmat3(right(), -up(), forward()));
+  return RigidTransform::fromMatrix(rotation, -(rotation * m_position));
+}
+
 double ViewCamera::metresPerPixel(double depth) const {
   return depth / focalPx();
 }

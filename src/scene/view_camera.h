@@ -8,7 +8,9 @@
 #include <glm/glm.hpp>
 #include <glm/gtc/quaternion.hpp>
 
+#include "camera/camera.h"
 #include "geometry/bounds.h"
+#include "geometry/rigid_transform.h"
 
 namespace alidade {
 
@@ -36,6 +38,9 @@ class ViewCamera {
   /// Pixel and depth along the view axis in metres; nothing at or behind the eye.
   std::optional<glm::dvec3> project(const glm::dvec3& world) const;
   double depthOf(const glm::dvec3& world) const;
+  /// The same view as a lens without distortion, whose pixels count from the centre of the first.
+  Camera pinhole() const;
+  RigidTransform cameraFromWorld() const;
   /// Metres that one pixel spans at this depth.
   double metresPerPixel(double depth) const;
 
@@ -50,6 +55,8 @@ class ViewCamera {
   void pan(const glm::dvec3& grabbed, const glm::dvec2& deltaPx);
   /// Comes `factor` times nearer to `target`, which keeps its place in the picture.
   void zoomTowards(const glm::dvec3& target, double factor);
+
+  friend bool operator==(const ViewCamera&, const ViewCamera&) = default;
 
  private:
   double focalPx() const;

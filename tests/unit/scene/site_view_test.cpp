@@ -135,7 +135,7 @@ class SiteViewTest : public ::testing::TestWithParam<double> {
   void showAll() {
     place = glm::dvec3(GetParam(), GetParam() * 0.5, 412);
     view->setDesigns({{kDesign, makeDesign(place), {}}});
-    view->setClouds({{makeCloud(place), nullptr, 0}}, 1.0, 1.0);
+    view->setClouds({{makeCloud(place), nullptr, 0}});
     view->setStakePoints({{"S1", place + glm::dvec3(0, -2, 0), "peg", 0.5}, {"S2", place + glm::dvec3(0, 5, 0), "", 0.02}});
     view->setFrames(makeFrames(place));
   }
@@ -258,17 +258,70 @@ TEST_P(SiteViewTest, LookingFromAFrameShowsWhatItsCameraSees) {
   EXPECT_NEAR(pixelOf(target).y, 300 + (inPicture->y - 239.5) * scale, 1e-3);
 }
 
-TEST_P(SiteViewTest, ADensityDrawsItsShareAndMovingDrawsFewer) {
+TEST_P(SiteViewTest, DesignAndScanHideEachOtherByDepth) {
   showAll();
-  const auto all = view->drawnPointCount();
-  EXPECT_EQ(all, 40000u);
-  view->setCloudDisplay(0.25, 1.0);
-  EXPECT_NEAR(static_cast<double>(view->drawnPointCount()), 10000.0, 500.0);
-  view->setCloudDisplay(0.0, 1.0);
-  EXPECT_EQ(view->drawnPointCount(), 0u);
-  view->setPointBudget(4000);
-  view->setCloudDisplay(1.0, 1.0);
-  EXPECT_NEAR(static_cast<double>(view->drawnPointCount()), 4000.0, 300.0);
+  // The plate hangs a metre above the slab's eastern end: moved below it, the slab hides it.
+  const glm::dvec3 above = place + glm::dvec3(8, 0, 1), below = place + glm::dvec3(8, 0, -1);
+  const QColor onTop = colourAt(picture("plate_above"), above);
+  EXPECT_GT(onTop.green(), 150);
+  EXPECT_LT(onTop.red(), 100);
+  const glm::dvec2 px = pixelOf(below);
+  view->setClouds({{makeCloud(place - glm::dvec3(0, 0, 2)), nullptr, 0}});
+  const QImage image = picture("plate_below");
+  const QColor slab = image.pixelColor(static_cast<int>(px.x), static_cast<int>(px.y));
+  EXPECT_LT(std::abs(slab.red() - slab.green()), 25);
+  EXPECT_EQ(view->pick(px)->element, 0);
+}
+
+TEST_P(SiteViewTest, ADensityDrawsItsShareOfWhatTheViewCanShow) {
+  showAll();
+  DisplaySettings display;
+  const auto whole = view->stillPointCount();
+  EXPECT_GT(whole, 1000u);
+  EXPECT_LE(whole, 40000u);
+  display.density = 0.25;
+  view->setDisplay(display);
+  EXPECT_NEAR(static_cast<double>(view->stillPointCount()), 0.25 * static_cast<double>(whole), 0.02 * static_cast<double>(whole));
+  display.density = 0;
+  view->setDisplay(display);
+  EXPECT_EQ(view->stillPointCount(), 0u);
+  // Near to it every point is there.
+  display.density = 1;
+  view->setDisplay(display);
+  Bounds plate;
+  plate.add(place + glm::dvec3(7.5, -0.2, 1));
+  plate.add(place + glm::dvec3(7.6, -0.1, 1));
+  view->fitTo(plate);
+  picture("near");
+  const glm::dvec3 one = place + glm::dvec3(7 + 0.01 * 55, -2 + 0.02 * 92, 1);
+  const auto pick = view->pick(pixelOf(one));
+  ASSERT_TRUE(pick.has_value());
+  EXPECT_LT(glm::length(pick->world - one), 1e-3);
+}
+
+TEST_P(SiteViewTest, AMovingViewThatIsSlowDrawsFewerPointsAndAStillOneAll) {
+  showAll();
+  PointStoreBuilder builder;
+  PointBatch batch;
+  for (int i = 0; i < 400'000; ++i)
+    batch.position.push_back(place + glm::dvec3(-10 + 0.025 * (i % 800), -6 + 0.024 * (i / 800), 4.0));
+  builder.add(batch);
+  view->setClouds({{*builder.build(Progress()), nullptr, 0}});
+  picture("still");
+  const auto still = view->drawnPointCount();
+  ASSERT_GT(still, 2 * FramePacer::kFewest);
+  view->setPace({0.001, 0});  // no machine is so quick: the budget falls to its least
+  view->setMoving(true);
+  for (int i = 0; i < 12; ++i) {
+    view->beginDrag({kWidth / 2, kHeight / 2});
+    view->orbit({3, 1});
+    picture("moving");
+  }
+  EXPECT_LT(view->drawnPointCount(), 1.05 * FramePacer::kFewest);
+  EXPECT_GT(view->drawnPointCount(), 0.5 * FramePacer::kFewest);
+  view->setMoving(false);
+  picture("rested");
+  EXPECT_GT(view->drawnPointCount(), still / 2);
 }
 
 TEST_P(SiteViewTest, TheContextMayGoAndAnotherOneComes) {

@@ -1,7 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the Alidade authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-#include "overlay/frame_pacer.h"
+#include "cloud/frame_pacer.h"
 
 #include <algorithm>
 
