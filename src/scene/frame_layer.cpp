@@ -15,6 +15,11 @@ constexpr glm::dvec3 kPyramidColour{0.55, 0.62, 0.72};
 constexpr glm::dvec3 kTrajectoryColour{0.38, 0.45, 0.58};
 constexpr glm::dvec3 kCurrentColour{1.0, 0.85, 0.2};
 constexpr std::size_t kMostPyramids = 150;
+// Of the site's diagonal: one of many cameras, and the current one.
+constexpr double kLength = 0.012, kCurrentLength = 0.025;
+// A pyramid is drawn where it stands this part of its length from the last one or looks elsewhere: a video's would
+// stack to a wall.
+constexpr double kApart = 0.8, kTurned = 0.3;
 constexpr double kPickPx = 5.0;
 
 constexpr std::array<std::array<std::uint32_t, 2>, 10> kPyramidLines = {
@@ -44,7 +49,7 @@ FrameLayer::FrameLayer(vtkRenderer* renderer)
   for (const LitActor& each : {m_pyramids, m_trajectory, m_currentPyramid}) renderer->AddActor(each.actor);
 }
 
-FrameLayer::Pyramid FrameLayer::pyramidOf(std::size_t frame) const {
+FrameLayer::Pyramid FrameLayer::pyramidOf(std::size_t frame, double length) const {
   const SceneFrustum& source = m_frames[frame];
   const RigidTransform worldFromCamera = source.cameraFromWorld.inverse();
   const double right = source.camera.width() - 0.5, bottom = source.camera.height() - 0.5;
@@ -54,7 +59,7 @@ FrameLayer::Pyramid FrameLayer::pyramidOf(std::size_t frame) const {
   const std::array<glm::dvec2, 4> corners = {{{-0.5, -0.5}, {right, -0.5}, {right, bottom}, {-0.5, bottom}}};
   std::array<glm::dvec3, 4> inCamera;
   for (int i = 0; i < 4; ++i) {
-    inCamera[i] = m_length * cornerDirection(source.camera, corners[i].x, corners[i].y);
+    inCamera[i] = length * cornerDirection(source.camera, corners[i].x, corners[i].y);
     pyramid.world[i + 1] = worldFromCamera * inCamera[i];
   }
   const glm::dvec3 top = 0.5 * (inCamera[0] + inCamera[1]), height = inCamera[0] - inCamera[3];
@@ -64,15 +69,21 @@ FrameLayer::Pyramid FrameLayer::pyramidOf(std::size_t frame) const {
 
 void FrameLayer::build(const glm::dvec3& origin, double sceneDiagonal) {
   m_origin = origin;
-  m_length = sceneDiagonal > 0 ? std::clamp(0.025 * sceneDiagonal, 0.05, 50.0) : 1.0;
+  const auto lengthOf = [&](double part) { return sceneDiagonal > 0 ? std::clamp(part * sceneDiagonal, 0.05, 50.0) : 1.0; };
+  const double length = lengthOf(kLength);
+  m_currentLength = lengthOf(kCurrentLength);
   m_shown.clear();
   const std::size_t step = (m_frames.size() + kMostPyramids - 1) / kMostPyramids;
+  const RigidTransform* last = nullptr;
   std::vector<glm::vec3> points, path;
   std::vector<std::array<std::uint32_t, 2>> lines;
   for (std::size_t i = 0; i < m_frames.size(); ++i) {
     path.emplace_back(m_frames[i].cameraFromWorld.centre() - m_origin);
+    const RigidTransform& pose = m_frames[i].cameraFromWorld;
     if (i % step != 0) continue;
-    const Pyramid pyramid = pyramidOf(i);
+    if (last && glm::length(pose.centre() - last->centre()) < kApart * length && rotationAngleBetween(pose, *last) < kTurned) continue;
+    last = &pose;
+    const Pyramid pyramid = pyramidOf(i, length);
     const auto first = static_cast<std::uint32_t>(points.size());
     for (const glm::dvec3& corner : pyramid.world) points.emplace_back(corner - m_origin);
     for (const auto& line : kPyramidLines) lines.push_back({first + line[0], first + line[1]});
@@ -93,7 +104,7 @@ void FrameLayer::buildCurrent() {
   std::vector<std::array<std::uint32_t, 2>> lines;
   const SceneFrustum* current = find(m_current);
   if (current != nullptr) {
-    const Pyramid pyramid = pyramidOf(static_cast<std::size_t>(current - m_frames.data()));
+    const Pyramid pyramid = pyramidOf(static_cast<std::size_t>(current - m_frames.data()), m_currentLength);
     for (const glm::dvec3& corner : pyramid.world) points.emplace_back(corner - m_origin);
     lines.assign(kPyramidLines.begin(), kPyramidLines.end());
   }
@@ -122,7 +133,7 @@ Bounds FrameLayer::bounds() const {
 std::optional<LayerHit> FrameLayer::hit(const ViewCamera& camera, const glm::dvec2& px) const {
   std::vector<Pyramid> candidates = m_shown;
   if (const SceneFrustum* current = find(m_current))
-    candidates.push_back(pyramidOf(static_cast<std::size_t>(current - m_frames.data())));
+    candidates.push_back(pyramidOf(static_cast<std::size_t>(current - m_frames.data()), m_currentLength));
   std::optional<LayerHit> best;
   double bestDistance = kPickPx * m_lineScale;
   for (const Pyramid& pyramid : candidates) {

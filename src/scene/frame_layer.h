@@ -34,14 +34,14 @@ class FrameLayer {
     std::size_t frame;
     std::array<glm::dvec3, 6> world;
   };
-  Pyramid pyramidOf(std::size_t frame) const;
+  Pyramid pyramidOf(std::size_t frame, double length) const;
   void buildCurrent();
 
   std::vector<SceneFrustum> m_frames;
   std::vector<Pyramid> m_shown;
   FrameId m_current;
   glm::dvec3 m_origin{0};
-  double m_length = 1;  ///< metres
+  double m_currentLength = 1;  ///< metres
   double m_lineScale = 1;
   LitActor m_pyramids, m_trajectory, m_currentPyramid;
 };
