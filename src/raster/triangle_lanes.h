@@ -82,20 +82,41 @@ ALIDADE_LENS_INLINE void storeSome(Element* to, const Vector& v, int count) {
   std::memcpy(to, &v, 4 * static_cast<std::size_t>(count));
 #endif
 }
-/// Bytes to words, and back.
+#if defined(__AVX512BW__) && ALIDADE_LANES == 16
+/// Bit i of a lane i below `count`.
+ALIDADE_LENS_INLINE __mmask16 firstLanes(int count) {
+  return static_cast<__mmask16>(count >= kLanes ? 0xffff : (1u << count) - 1);
+}
+#endif
+/// Bytes to words, and back. Written out, because compilers take a vector of bytes apart one by one.
 ALIDADE_LENS_INLINE Ints loadBytes(const std::uint8_t* from, int count) {
+#if defined(__AVX512BW__) && ALIDADE_LANES == 16
+  return reinterpret_cast<Ints>(_mm512_cvtepu8_epi32(_mm_maskz_loadu_epi8(firstLanes(count), from)));
+#else
   typedef std::uint8_t Few __attribute__((vector_size(kLanes)));
   Few few{};
   if (count >= kLanes)
     std::memcpy(&few, from, kLanes);
   else
     std::memcpy(&few, from, static_cast<std::size_t>(count));
+#if defined(__AVX2__) && ALIDADE_LANES == 8
+  return reinterpret_cast<Ints>(_mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(&few))));
+#else
   return __builtin_convertvector(few, Ints);
+#endif
+#endif
 }
 ALIDADE_LENS_INLINE void storeBytes(std::uint8_t* to, const Ints& v, int count) {
+#if defined(__AVX512BW__) && ALIDADE_LANES == 16
+  _mm_mask_storeu_epi8(to, firstLanes(count), _mm512_cvtepi32_epi8(reinterpret_cast<__m512i>(v)));
+#else
   typedef std::uint8_t Few __attribute__((vector_size(kLanes)));
   const Few few = __builtin_convertvector(v, Few);
-  std::memcpy(to, &few, static_cast<std::size_t>(count < kLanes ? count : kLanes));
+  if (count >= kLanes)
+    std::memcpy(to, &few, kLanes);
+  else
+    std::memcpy(to, &few, static_cast<std::size_t>(count));
+#endif
 }
 
 ALIDADE_LENS_INLINE Ints asInts(const Floats& v) {
