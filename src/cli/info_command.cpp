@@ -43,6 +43,13 @@ std::string crsText(const std::string& crs) {
   return fmt::format("  crs       {}\n", crs.size() > 100 ? crs.substr(0, 97) + "…" : crs);
 }
 
+/// From the header alone: over the rectangle of the bounds, whatever part of it holds points.
+std::string densityText(double pointsPerSquareMetre) {
+  if (!(pointsPerSquareMetre > 0)) return "";
+  const std::string points = pointsPerSquareMetre < 100 ? fmt::format("{:.3g}", pointsPerSquareMetre) : fmt::format("{:.0f}", pointsPerSquareMetre);
+  return fmt::format("  density   {} points a square metre of the bounds\n", points);
+}
+
 std::string stationsText(const std::vector<Station>& stations) {
   constexpr std::size_t kMost = 20;
   std::string text;
@@ -61,17 +68,17 @@ Result<Description> describe(const ScanReader& reader, const std::string& path) 
   const auto info = reader.inspect(path);
   if (!info) return fail(info.error());
   const glm::dvec3 size = info->bounds.size();
-  const double area = size.x * size.y;
+  const double area = size.x * size.y, density = area > 0 ? static_cast<double>(info->pointCount) / area : 0;
   Description out;
   out.json = {{"kind", "scan"},        {"points", info->pointCount}, {"bounds_m", boundsJson(info->bounds)},
               {"crs", info->crs},      {"scale_m", vec(info->scale)}, {"attributes", info->attributes},
               {"stations", Json::array()}, {"details", info->details}};
-  out.json["points_per_square_metre"] = area > 0 ? Json(static_cast<double>(info->pointCount) / area) : Json(nullptr);
+  out.json["points_per_square_metre"] = area > 0 ? Json(density) : Json(nullptr);
   for (const Station& station : info->stations)
     out.json["stations"].push_back({{"name", station.name}, {"position_m", vec(station.worldFromScanner.translation)},
                                     {"rows", station.rows}, {"columns", station.columns}});
-  out.text = fmt::format("  points    {}\n", info->pointCount) + boundsText(info->bounds) + crsText(info->crs) +
-             fmt::format("  columns   {}\n", fmt::join(info->attributes, ", "));
+  out.text = fmt::format("  points    {}\n", info->pointCount) + boundsText(info->bounds) + densityText(density) +
+             crsText(info->crs) + fmt::format("  columns   {}\n", fmt::join(info->attributes, ", "));
   if (!info->stations.empty()) out.text += fmt::format("  stations  {}\n", info->stations.size()) + stationsText(info->stations);
   out.text += fmt::format("  format    {}\n", info->details);
   return out;
