@@ -17,7 +17,7 @@ namespace {
 /// The worker whose body runs on this thread; -1 outside any body.
 thread_local int t_worker = -1;
 
-/// One batch at a time: parallelFor from two threads queues on m_batchMutex.
+/// One batch at a time.
 class Pool {
  public:
   static Pool& instance() {
@@ -27,9 +27,11 @@ class Pool {
 
   int size() const { return static_cast<int>(m_threads.size()) + 1; }
 
-  void run(std::size_t count, std::size_t grain,
+  /// False where another thread's batch has the pool: a picture must not wait for an index.
+  bool run(std::size_t count, std::size_t grain,
            const std::function<void(std::size_t, std::size_t, int)>& body) {
-    std::lock_guard batch(m_batchMutex);
+    const std::unique_lock batch(m_batchMutex, std::try_to_lock);
+    if (!batch) return false;
     {
       std::lock_guard lock(m_mutex);
       m_body = &body;
@@ -44,6 +46,7 @@ class Pool {
     std::unique_lock lock(m_mutex);
     m_done.wait(lock, [this] { return m_busy == 0; });
     m_body = nullptr;
+    return true;
   }
 
  private:
@@ -110,12 +113,14 @@ void parallelFor(std::size_t count, std::size_t grain,
                  const std::function<void(std::size_t, std::size_t, int)>& body) {
   if (count == 0) return;
   grain = std::max<std::size_t>(grain, 1);
-  if (t_worker >= 0 || count <= grain) {
-    const int worker = std::max(t_worker, 0);
+  const auto alone = [&](int worker) {
     for (std::size_t first = 0; first < count; first += grain) body(first, std::min(first + grain, count), worker);
-    return;
-  }
-  Pool::instance().run(count, grain, body);
+  };
+  if (t_worker >= 0 || count <= grain) return alone(std::max(t_worker, 0));
+  if (Pool::instance().run(count, grain, body)) return;
+  t_worker = 0;
+  alone(0);
+  t_worker = -1;
 }
 
 }  // namespace alidade

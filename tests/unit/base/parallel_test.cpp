@@ -4,6 +4,7 @@
 #include "base/parallel.h"
 
 #include <atomic>
+#include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -29,6 +30,22 @@ TEST(ParallelFor, KeepsAWorkerToOneChunkAtATime) {
     busy[worker].fetch_sub(1);
   });
   EXPECT_FALSE(clash);
+}
+
+TEST(ParallelFor, DoesNotWaitForAnotherThreadsCall) {
+  std::atomic<int> done{0};
+  std::atomic<bool> ended{false};
+  parallelFor(4, 1, [&](std::size_t first, std::size_t, int) {
+    if (first != 0) return;
+    // The pool is taken until another thread has had its own loop.
+    std::thread other([&] {
+      parallelFor(100, 1, [&](std::size_t, std::size_t, int worker) { done += worker == 0; });
+      ended = true;
+    });
+    other.join();
+  });
+  EXPECT_TRUE(ended);
+  EXPECT_EQ(done, 100);
 }
 
 }  // namespace alidade
