@@ -349,7 +349,11 @@ std::vector<std::uint32_t> BlueNoise::thin(const TilePoints& points, std::span<c
 int finestPassOf(std::span<const std::uint64_t> codes, int droppedBits) {
   // alone[k]: points that share their cell of 2^k units with no other before them.
   std::array<std::uint64_t, 24> alone{};
-  for (std::size_t i = 1; i < codes.size(); ++i) ++alone[(static_cast<std::size_t>(std::bit_width(codes[i] ^ codes[i - 1])) + 2) / 3];
+  // Counted by bits and by turns: the same counter twice running would wait for itself.
+  std::array<std::array<std::uint32_t, 65>, 4> counts{};
+  for (std::size_t i = 1; i < codes.size(); ++i) ++counts[i & 3][static_cast<std::size_t>(std::bit_width(codes[i] ^ codes[i - 1]))];
+  for (const auto& turn : counts)
+    for (std::size_t bits = 0; bits < turn.size(); ++bits) alone[(bits + 2) / 3] += turn[bits];
   // So far by the highest axis bit in which a point and the one before it differ, counted from 1.
   for (std::size_t k = alone.size() - 1; k-- > 0;) alone[k] += alone[k + 1];
   std::rotate(alone.begin(), alone.begin() + 1, alone.end());

@@ -4,19 +4,17 @@
 #include "cloud/chunk_plan.h"
 
 #include <algorithm>
+#include <map>
 
 #include "cloud/morton.h"
+#include "cloud/radix_sort.h"
+#include "cloud/raw_bytes.h"
 
 namespace alidade {
 
 namespace {
 
 constexpr int kDeepestCell = 7;
-
-struct Place {
-  std::uint64_t tile;
-  std::uint64_t inTile;
-};
 
 /// Tiles are counted in 20 bits and a sign (lattice.h).
 std::uint64_t tileCode(const glm::ivec3& tile) {
@@ -43,21 +41,18 @@ bool mortonLess(const PlanCell& a, const PlanCell& b) {
 }
 
 ChunkPlan::ChunkPlan(std::span<const glm::i64vec3> sample, std::uint64_t pointCount, std::uint64_t cellPoints) {
-  std::vector<Place> places;
-  places.reserve(sample.size());
+  std::map<std::uint64_t, RawVector<std::uint64_t>> tiles;  // Morton codes inside each, by its own
   for (const glm::i64vec3& unit : sample) {
-    const glm::ivec3 tile(unit >> std::int64_t{16});
     const glm::i64vec3 in = unit & std::int64_t{0xffff};
-    places.push_back({tileCode(tile), mortonOf(static_cast<std::uint64_t>(in.x), static_cast<std::uint64_t>(in.y),
-                                               static_cast<std::uint64_t>(in.z))});
+    tiles[tileCode(glm::ivec3(unit >> std::int64_t{16}))].push_back(mortonOf(
+        static_cast<std::uint64_t>(in.x), static_cast<std::uint64_t>(in.y), static_cast<std::uint64_t>(in.z)));
   }
-  std::sort(places.begin(), places.end(),
-            [](const Place& a, const Place& b) { return a.tile != b.tile ? a.tile < b.tile : a.inTile < b.inTile; });
   const double each = sample.empty() ? 1.0 : static_cast<double>(std::max<std::uint64_t>(pointCount, sample.size())) / static_cast<double>(sample.size());
 
   std::vector<double> expected;  // points a cell
-  const auto cut = [&](const auto& self, const glm::ivec3& tile, std::uint64_t code, int depth, std::size_t first, std::size_t last) -> void {
-    const double points = each * static_cast<double>(last - first);
+  using Codes = std::span<const std::uint64_t>;
+  const auto cut = [&](const auto& self, const glm::ivec3& tile, std::uint64_t code, int depth, Codes codes) -> void {
+    const double points = each * static_cast<double>(codes.size());
     if (points <= static_cast<double>(cellPoints) || depth == kDeepestCell) {
       PlanCell cell{tile, static_cast<std::uint8_t>(depth), {}};
       const std::uint64_t at = code >> 3 * (16 - depth);
@@ -69,18 +64,16 @@ ChunkPlan::ChunkPlan(std::span<const glm::i64vec3> sample, std::uint64_t pointCo
     }
     for (std::uint64_t octant = 0; octant < 8; ++octant) {
       const std::uint64_t from = code + (octant << 3 * (15 - depth)), to = from + (std::uint64_t{1} << 3 * (15 - depth));
-      const auto begin = places.begin() + static_cast<std::ptrdiff_t>(first), end = places.begin() + static_cast<std::ptrdiff_t>(last);
-      const auto below = [](const Place& p, std::uint64_t limit) { return p.inTile < limit; };
-      const auto low = std::lower_bound(begin, end, from, below), high = std::lower_bound(begin, end, to, below);
-      self(self, tile, from, depth + 1, static_cast<std::size_t>(low - places.begin()), static_cast<std::size_t>(high - places.begin()));
+      const auto low = std::lower_bound(codes.begin(), codes.end(), from), high = std::lower_bound(low, codes.end(), to);
+      self(self, tile, from, depth + 1, Codes(low, high));
     }
   };
-  for (std::size_t i = 0; i < places.size();) {
-    std::size_t end = i;
-    while (end < places.size() && places[end].tile == places[i].tile) ++end;
+  RawVector<std::uint64_t> scratch;
+  for (auto& [code, codes] : tiles) {
+    sortKeys(codes, scratch, 3 * 16);
     const std::size_t firstCell = m_cells.size();
-    const glm::ivec3 tile = tileOfCode(places[i].tile);
-    cut(cut, tile, 0, 0, i, end);
+    const glm::ivec3 tile = tileOfCode(code);
+    cut(cut, tile, 0, 0, codes);
     TileGrid grid;
     for (std::size_t c = firstCell; c < m_cells.size(); ++c) grid.depth = std::max<int>(grid.depth, m_cells[c].depth);
     grid.grid.resize(std::size_t{1} << 3 * grid.depth);
@@ -94,7 +87,6 @@ ChunkPlan::ChunkPlan(std::span<const glm::i64vec3> sample, std::uint64_t pointCo
             grid.grid[(z << grid.depth | y) << grid.depth | x] = static_cast<std::uint32_t>(c);
     }
     m_tiles.emplace(tile, std::move(grid));
-    i = end;
   }
   double inStream = 0;
   for (std::size_t c = 0; c < m_cells.size(); ++c) {

@@ -61,17 +61,9 @@ void withLength(std::size_t bytes, const Copy& copy) {
   }
 }
 
-/// Records from `from`, `stride` apart, to one after the other: those of these indices, in their order.
-void gatherRecords(const std::byte* from, std::size_t stride, const std::uint32_t* indices, std::size_t count, std::size_t bytes,
-                   std::byte* to) {
+void copyRecords(const std::byte* const* from, std::size_t count, std::size_t bytes, std::byte* to) {
   withLength(bytes, [&](auto length) {
-    constexpr std::size_t kAhead = 24;
-    const std::size_t hinted = count > kAhead ? count - kAhead : 0;
-    for (std::size_t i = 0; i < hinted; ++i) {
-      __builtin_prefetch(from + indices[i + kAhead] * stride);
-      std::memcpy(to + i * std::size_t{length}, from + indices[i] * stride, length);
-    }
-    for (std::size_t i = hinted; i < count; ++i) std::memcpy(to + i * std::size_t{length}, from + indices[i] * stride, length);
+    for (std::size_t i = 0; i < count; ++i) std::memcpy(to + i * std::size_t{length}, from[i], length);
   });
 }
 
@@ -242,8 +234,8 @@ bool PartStages::readNote(const std::vector<std::byte>& bytes) {
 }
 
 std::uint64_t PartStages::costOf(std::uint32_t stream) const {
-  // Records as loaded, in both orders and as written, keys twice, places, lists of two passes, the tree's lists.
-  return m_streamPoints[stream] * (4 * m_layout.bytes + 8 + 100);
+  // Records as loaded, cell by cell and as written, keys twice, places, lists of two passes, the tree's lists.
+  return m_streamPoints[stream] * (3 * m_layout.bytes + 8 + 100);
 }
 
 void PartStages::releaseBorders(std::uint32_t stream) {
@@ -255,8 +247,9 @@ void PartStages::releaseBorders(std::uint32_t stream) {
   if (m_waiting[stream] == 0) free(stream);
 }
 
-/// Appends the tree's points, in its order, to the output; its point i is the record at records + i * stride.
-void PartStages::emit(Output& output, const SubTree& tree, const std::byte* records, std::size_t stride, CellDone& done) {
+/// Appends the tree's points, in its order, to the output; its point i is the record at records + rows[i] * stride.
+void PartStages::emit(Output& output, const SubTree& tree, const std::byte* records, std::size_t stride,
+                      std::span<const std::uint32_t> rows, CellDone& done) {
   done.nodes = tree.nodes;
   auto& tables = output.columns[PartSink::kTables];
   for (BuildNode& node : done.nodes) {
@@ -274,15 +267,28 @@ void PartStages::emit(Output& output, const SubTree& tree, const std::byte* reco
   for (std::size_t i = 0; i < widths.size(); ++i) output.columns[columnOf(i)].resize(output.points * widths[i]);
   // Some records at a time: their columns are then taken from the nearest memory there is.
   constexpr std::size_t kBlock = 256;
+  constexpr std::size_t kAhead = 64;  // records asked for before they are wanted
   std::vector<std::byte> block(kBlock * m_layout.bytes);
-  for (std::size_t start = 0; start < tree.order.size(); start += kBlock) {
-    const std::size_t count = std::min(kBlock, tree.order.size() - start);
-    gatherRecords(records, stride, tree.order.data() + start, count, m_layout.bytes, block.data());
-    std::size_t at = 0;
+  std::array<const std::byte*, kBlock + kAhead> at{};
+  const std::size_t all = tree.order.size();
+  const auto locate = [&](std::size_t begin, std::size_t end, const std::byte** to) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::byte* record = records + rows[tree.order[i]] * stride;
+      __builtin_prefetch(record), __builtin_prefetch(record + m_layout.bytes - 1);
+      *to++ = record;
+    }
+  };
+  locate(0, std::min(kAhead, all), at.data());
+  for (std::size_t start = 0; start < all; start += kBlock) {
+    const std::size_t count = std::min(kBlock, all - start);
+    locate(std::min(start + kAhead, all), std::min(start + kBlock + kAhead, all), at.data() + kAhead);
+    copyRecords(at.data(), count, m_layout.bytes, block.data());
+    std::copy_n(at.begin() + kBlock, kAhead, at.begin());
+    std::size_t column = 0;
     for (std::size_t i = 0; i < widths.size(); ++i) {
       if (widths[i] > 0)
-        takeColumn(block.data() + at, m_layout.bytes, count, widths[i], output.columns[columnOf(i)].data() + (first + start) * widths[i]);
-      at += widths[i];
+        takeColumn(block.data() + column, m_layout.bytes, count, widths[i], output.columns[columnOf(i)].data() + (first + start) * widths[i]);
+      column += widths[i];
     }
   }
 }
@@ -294,7 +300,7 @@ void PartStages::Output::clear() {
 }
 
 Result<void> PartStages::buildStream(std::uint32_t stream, Workshop& shop) {
-  auto& [noise, sort, points, records, sorted, packed, output] = shop;
+  auto& [noise, sort, points, records, packed, output] = shop;
   output.clear();
   output.columns.resize(columnCount());
   auto loaded = m_streams->load(m_usedStreams[stream]);
@@ -319,7 +325,7 @@ Result<void> PartStages::buildStream(std::uint32_t stream, Workshop& shop) {
   for (const std::uint32_t c : m_cellsOf[stream]) {
     const PlanCell& cell = m_spread.cells[c].cell;
     const std::uint64_t count = m_spread.cells[c].count;
-    records.resize(count * m_layout.bytes), packed.resize(count), sorted.resize(count * m_layout.bytes);
+    records.resize(count * m_layout.bytes), packed.resize(count);
     std::uint64_t taken = 0;
     for (; next < runs.size() && runs[next].cell == c; ++next) {
       const Run& run = runs[next];
@@ -330,7 +336,6 @@ Result<void> PartStages::buildStream(std::uint32_t stream, Workshop& shop) {
     }
     if (taken != count) return damaged();
     sortCell(cell, packed, sort, points);
-    gatherRecords(records.data(), m_layout.bytes, points.row.data(), count, m_layout.bytes, sorted.data());
     const int coarsest = cell.depth > 0 ? cell.depth : kCoarsestPass;
     std::vector<Obstacle> obstacles;
     if (m_tree.kind == LevelKind::BlueNoise) {
@@ -342,14 +347,14 @@ Result<void> PartStages::buildStream(std::uint32_t stream, Workshop& shop) {
     const std::vector<std::uint32_t> undecided = assignLevels(cell, points, obstacles, m_tree, noise);
     CellDone done;
     if (m_tree.kind == LevelKind::BlueNoise) done.borders = borderSamples(cell, points, undecided);
-    emit(output, buildCellTree(cell, points, undecided, m_tree), sorted.data(), m_layout.bytes, done);
+    emit(output, buildCellTree(cell, points, undecided, m_tree), records.data(), m_layout.bytes, points.row, done);
     done.topsAt = tops.size();
     done.tops = static_cast<std::uint32_t>(undecided.size());
     tops.resize(done.topsAt + undecided.size() * (kTopHeader + m_layout.bytes));
     std::byte* out = tops.data() + done.topsAt;
     for (const std::uint32_t i : undecided) {
       std::memcpy(out, &points.level[i], sizeof(std::int16_t));
-      std::memcpy(out + kTopHeader, sorted.data() + i * m_layout.bytes, m_layout.bytes);
+      std::memcpy(out + kTopHeader, records.data() + points.row[i] * m_layout.bytes, m_layout.bytes);
       out += kTopHeader + m_layout.bytes;
     }
     output.cells.emplace_back(c, std::move(done));
@@ -395,7 +400,7 @@ Result<void> PartStages::buildTile(std::uint32_t t, Workshop& shop) {
   assignTopLevels(tile.tile, top, obstacles, m_tree, shop.noise);
   if (m_tree.kind == LevelKind::BlueNoise) tile.borders = borderSamples(whole, top.points, {});
   CellDone done;
-  emit(output, buildTopTree(tile.tile, cells, top), bytes.empty() ? nullptr : bytes.data() + kTopHeader, each, done);
+  emit(output, buildTopTree(tile.tile, cells, top), bytes.empty() ? nullptr : bytes.data() + kTopHeader, each, top.points.row, done);
   output.cells.emplace_back(t, std::move(done));
   return {};
 }

@@ -48,7 +48,7 @@ class PartStages {
     BlueNoise noise;
     SortKeys sort;
     CellPoints points;
-    RawVector<std::byte> records, sorted;  ///< of a cell: in the source's order, and in Morton order
+    RawVector<std::byte> records;  ///< of a cell, in the source's order
     RawVector<std::uint64_t> packed;
     Output output;
   };
@@ -66,7 +66,8 @@ class PartStages {
   Result<void> buildStream(std::uint32_t stream, Workshop& shop);
   Result<void> buildTile(std::uint32_t tile, Workshop& shop);
   std::size_t columnCount() const { return PartSink::kFirstAttribute + m_schema.columns.size(); }
-  void emit(Output& output, const SubTree& tree, const std::byte* records, std::size_t stride, CellDone& done);
+  void emit(Output& output, const SubTree& tree, const std::byte* records, std::size_t stride,
+            std::span<const std::uint32_t> rows, CellDone& done);
   Result<void> commit(Output& output, const Offsets& at);
   std::uint64_t costOf(std::uint32_t stream) const;
   /// Frees the border samples that no stream waits for any more, now that this one is done.
