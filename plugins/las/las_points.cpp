@@ -60,124 +60,96 @@ void decodeOwn(const LasHeader& header, const LasExtraBytes* extra, const std::b
   }
 }
 
-/// A column of bytes that stand so in the record.
-struct CopiedField {
-  std::size_t at, bytes;
+/// A field of the records on its way to its column.
+struct Filling {
+  const RecordField* field;
+  std::size_t bytes;  ///< of a point
   std::byte* to;
 
-  void copy(const std::byte* records, std::size_t stride, std::size_t first, std::size_t count) const {
-    const std::byte* from = records + first * stride + at;
-    const auto run = [&](auto size) {
+  void run(const std::byte* records, std::size_t stride, std::size_t first, std::size_t count) const {
+    const std::byte* from = records + first * stride;
+    if (!field->parts.empty()) return put(from, stride, to + first, count);
+    from += field->at;
+    const auto copy = [&](auto size) {
       std::byte* out = to + first * std::size_t{size};
       for (std::size_t i = 0; i < count; ++i) std::memcpy(out + i * std::size_t{size}, from + i * stride, size);
     };
     switch (bytes) {
-      case 1: return run(std::integral_constant<std::size_t, 1>{});
-      case 2: return run(std::integral_constant<std::size_t, 2>{});
-      case 4: return run(std::integral_constant<std::size_t, 4>{});
-      case 6: return run(std::integral_constant<std::size_t, 6>{});
-      case 8: return run(std::integral_constant<std::size_t, 8>{});
-      default: return run(bytes);
-    }
-  }
-};
-
-/// What becomes of a file's records: columns, in the memory that the batch has.
-class BatchFilling {
- public:
-  BatchFilling(const LasHeader& header, std::size_t count, PointBatch& batch) : m_header(header), m_count(count), m_batch(batch) {
-    for (auto* column : {&batch.classification, &batch.returnNumber, &batch.returnCount}) column->resize(count);
-    batch.position.resize(count);
-    batch.intensity.resize(count);
-    batch.gpsTime.clear(), batch.rgb.clear(), batch.normal.clear(), batch.scanner.clear(), batch.row.clear(), batch.column.clear();
-    copyColumn(12, batch.intensity);
-    if (header.hasGpsTime()) copyColumn(header.gpsTimeOffset(), batch.gpsTime);
-    if (header.hasRgb()) copyColumn(header.rgbOffset(), batch.rgb);
-    copyColumn(header.pointFormat >= 6 ? 20 : 18, batch.pointSource);
-    addFieldsWithoutColumn();
-  }
-
-  /// Bytes of the record as a column of its own.
-  void copyExtra(const std::string& name, NumberType type, int components, std::size_t at) {
-    ExtraColumn& column = addExtra(name, type, components);
-    m_copied.push_back({at, column.bytesPerPoint(), column.data.data()});
-  }
-
-  /// Fills the columns, a stretch after the other: its records are looked at once a column, and stay at hand.
-  void run(const std::byte* records) {
-    m_batch.extra.resize(m_extras);
-    const std::size_t stride = m_header.recordLength;
-    constexpr std::size_t kStretch = 512;
-    for (std::size_t first = 0; first < m_count; first += kStretch) {
-      const std::size_t count = std::min(kStretch, m_count - first);
-      if (m_header.pointFormat >= 6) fillCore<true>(records, first, count);
-      else fillCore<false>(records, first, count);
-      for (const CopiedField& field : m_copied) field.copy(records, stride, first, count);
+      case 1: return copy(std::integral_constant<std::size_t, 1>{});
+      case 2: return copy(std::integral_constant<std::size_t, 2>{});
+      case 4: return copy(std::integral_constant<std::size_t, 4>{});
+      case 6: return copy(std::integral_constant<std::size_t, 6>{});
+      case 8: return copy(std::integral_constant<std::size_t, 8>{});
+      default: return copy(bytes);
     }
   }
 
  private:
-  template <class T>
-  void copyColumn(std::size_t at, std::vector<T>& column) {
-    column.resize(m_count);
-    m_copied.push_back({at, sizeof(T), reinterpret_cast<std::byte*>(column.data())});
-  }
-
-  ExtraColumn& addExtra(const std::string& name, NumberType type, int components) {
-    if (m_extras == m_batch.extra.size()) m_batch.extra.emplace_back();
-    ExtraColumn& column = m_batch.extra[m_extras++];
-    column.name = name, column.type = type, column.components = components;
-    column.data.resize(m_count * column.bytesPerPoint());
-    return column;
-  }
-
-  void addFieldsWithoutColumn() {
-    if (m_header.pointFormat >= 6) {
-      copyExtra("scan_flags", NumberType::U8, 1, 15);
-      copyExtra("scan_angle", NumberType::I16, 1, 18);
-    } else {
-      m_flags = addExtra("scan_flags", NumberType::U8, 1).data.data();
-      copyExtra("scan_angle_rank", NumberType::I8, 1, 16);
-    }
-    copyExtra("user_data", NumberType::U8, 1, 17);
-    if (m_header.hasNir()) copyExtra("nir", NumberType::U16, 1, 36);
-    if (m_header.hasWaveforms()) copyExtra("wave_packet", NumberType::U8, 29, m_header.wavePacketOffset());
-  }
-
-  /// Coordinates, and the fields that share a byte.
-  template <bool kWide>
-  void fillCore(const std::byte* records, std::size_t first, std::size_t count) {
-    const std::size_t stride = m_header.recordLength;
-    const glm::dvec3 scale = m_header.scale, offset = m_header.offset;
-    glm::dvec3* position = m_batch.position.data();
-    // Bytes may stand for anything: the columns' own addresses would be read again for each.
-    std::uint8_t *number = m_batch.returnNumber.data(), *returnCount = m_batch.returnCount.data(), *classes = m_batch.classification.data();
-    std::byte* flags = m_flags;
-    const std::byte* at = records + first * stride;
-    for (std::size_t i = first; i < first + count; ++i, at += stride) {
-      const glm::dvec3 steps(lasValue<std::int32_t>(at, 0), lasValue<std::int32_t>(at, 4), lasValue<std::int32_t>(at, 8));
-      position[i] = scale * steps + offset;
-      const auto returns = lasValue<std::uint8_t>(at, 14);
-      number[i] = returns & (kWide ? 0x0F : 0x07);
-      returnCount[i] = kWide ? returns >> 4 : returns >> 3 & 0x07;
-      if constexpr (kWide) {
-        classes[i] = lasValue<std::uint8_t>(at, 16);
-      } else {
-        // Three flags stand in the upper bits of the classification: they come where the formats 6-10 have them.
-        const auto classification = lasValue<std::uint8_t>(at, 15);
-        classes[i] = classification & 0x1F;
-        flags[i] = static_cast<std::byte>(classification >> 5 | (returns & 0xC0));
-      }
+  void put(const std::byte* from, std::size_t stride, std::byte* out, std::size_t count) const {
+    std::fill_n(out, count, std::byte{0});
+    for (const RecordField::Part& part : field->parts) {
+      const std::uint8_t* values = part.values.data();
+      for (std::size_t i = 0; i < count; ++i) out[i] |= static_cast<std::byte>(values[lasValue<std::uint8_t>(from + i * stride, part.at)]);
     }
   }
-
-  const LasHeader& m_header;
-  std::size_t m_count;
-  PointBatch& m_batch;
-  std::size_t m_extras = 0;  ///< of the batch's extra columns, those that are filled
-  std::byte* m_flags = nullptr;
-  std::vector<CopiedField> m_copied;
 };
+
+/// The batch's own column for a field, with room for so many points.
+std::byte* columnFor(const RecordField& field, std::size_t count, PointBatch& batch) {
+  const auto sized = [&](auto& column) {
+    column.resize(count);
+    return reinterpret_cast<std::byte*>(column.data());
+  };
+  if (field.name == "rgb") return sized(batch.rgb);
+  if (field.name == "intensity") return sized(batch.intensity);
+  if (field.name == "classification") return sized(batch.classification);
+  if (field.name == "return_number") return sized(batch.returnNumber);
+  if (field.name == "return_count") return sized(batch.returnCount);
+  if (field.name == "gps_time") return sized(batch.gpsTime);
+  return sized(batch.pointSource);
+}
+
+/// Fills the batch's columns, in the memory that they have, a stretch after the other: its records are looked at once a
+/// column, and stay at hand.
+void fillBatch(const RecordFormat& format, const std::byte* records, std::size_t count, PointBatch& batch) {
+  batch.gpsTime.clear(), batch.rgb.clear(), batch.normal.clear(), batch.scanner.clear(), batch.row.clear(), batch.column.clear();
+  batch.position.resize(count);
+  batch.rgbWhite = format.rgbWhite;
+  std::vector<Filling> fillings;
+  std::size_t extras = 0;
+  for (const RecordField& field : format.fields) {
+    const std::size_t bytes = numberSize(field.type) * static_cast<std::size_t>(field.components);
+    if (!field.extra) {
+      fillings.push_back({&field, bytes, columnFor(field, count, batch)});
+      continue;
+    }
+    if (extras == batch.extra.size()) batch.extra.emplace_back();
+    ExtraColumn& column = batch.extra[extras++];
+    column.name = field.name, column.type = field.type, column.components = field.components;
+    column.data.resize(count * bytes);
+    fillings.push_back({&field, bytes, column.data.data()});
+  }
+  batch.extra.resize(extras);
+  const glm::dvec3 scale = format.scale, offset = format.offset;
+  glm::dvec3* position = batch.position.data();
+  constexpr std::size_t kStretch = 512;
+  for (std::size_t first = 0; first < count; first += kStretch) {
+    const std::size_t some = std::min(kStretch, count - first);
+    for (std::size_t i = first; i < first + some; ++i) {
+      const std::byte* at = records + i * format.bytes;
+      position[i] = scale * glm::dvec3(lasValue<std::int32_t>(at, 0), lasValue<std::int32_t>(at, 4), lasValue<std::int32_t>(at, 8)) + offset;
+    }
+    for (const Filling& filling : fillings) filling.run(records, format.bytes, first, some);
+  }
+}
+
+/// What a byte says of a field.
+template <class Value>
+RecordField::Part partOf(std::size_t at, const Value& value) {
+  RecordField::Part part{at, {}};
+  for (unsigned byte = 0; byte < part.values.size(); ++byte) part.values[byte] = static_cast<std::uint8_t>(value(byte));
+  return part;
+}
 
 /// How many bytes stand behind the last described one.
 std::uint32_t undescribedBytes(const LasHeader& header) {
@@ -190,14 +162,14 @@ std::string nameOf(const LasExtraBytes& extra) {
   return extra.name.empty() ? "extra_bytes" : extra.name;
 }
 
-void copyExtras(const LasHeader& header, const OwnColumns& own, BatchFilling& filling) {
+void addExtras(const LasHeader& header, const OwnColumns& own, std::vector<RecordField>& fields) {
   for (const LasExtraBytes& extra : header.extras) {
     if (own.takes(extra) || extra.size == 0) continue;
     const int components = extra.type == 0 ? static_cast<int>(extra.size) : extra.components;
-    filling.copyExtra(nameOf(extra), kTypes[extra.type], components, extra.offset);
+    fields.push_back({nameOf(extra), kTypes[extra.type], components, true, extra.offset, {}});
   }
   if (const std::uint32_t rest = undescribedBytes(header); rest > 0)
-    filling.copyExtra("extra_bytes", NumberType::U8, static_cast<int>(rest), header.recordLength - rest);
+    fields.push_back({"extra_bytes", NumberType::U8, static_cast<int>(rest), true, header.recordLength - rest, {}});
 }
 
 /// The station of each point by the point source ID that the station's record names; none for the
@@ -233,13 +205,50 @@ std::uint16_t largestLasColour(const LasHeader& header, const std::byte* records
   return largest;
 }
 
-void decodeLasPoints(const LasHeader& header, const std::byte* records, std::size_t count, bool unshiftedColours,
-                     PointBatch& batch) {
+RecordFormat lasRecordFormat(const LasHeader& header, bool unshiftedColours) {
+  const bool wide = header.pointFormat >= 6;
+  RecordFormat format;
+  format.bytes = header.recordLength;
+  format.scale = header.scale, format.offset = header.offset;
+  format.rgbWhite = unshiftedColours ? 255 : 65535;
+  auto& fields = format.fields;
+  const auto add = [&](const char* name, NumberType type, int components, std::size_t at, bool extra = false) {
+    fields.push_back({name, type, components, extra, at, {}});
+  };
+  const auto addParts = [&](const char* name, std::vector<RecordField::Part> parts, bool extra = false) {
+    fields.push_back({name, NumberType::U8, 1, extra, 0, std::move(parts)});
+  };
+  if (header.hasRgb()) add("rgb", NumberType::U16, 3, header.rgbOffset());
+  add("intensity", NumberType::U16, 1, 12);
+  if (wide) add("classification", NumberType::U8, 1, 16);
+  else addParts("classification", {partOf(15, [](unsigned v) { return v & 0x1F; })});
+  addParts("return_number", {partOf(14, [wide](unsigned v) { return v & (wide ? 0x0F : 0x07); })});
+  addParts("return_count", {partOf(14, [wide](unsigned v) { return wide ? v >> 4 : v >> 3 & 0x07; })});
+  if (header.hasGpsTime()) add("gps_time", NumberType::F64, 1, header.gpsTimeOffset());
+  add("point_source", NumberType::U16, 1, wide ? 20 : 18);
+  if (wide) {
+    add("scan_flags", NumberType::U8, 1, 15, true);
+    add("scan_angle", NumberType::I16, 1, 18, true);
+  } else {
+    // Three flags stand in the upper bits of the classification: they come where the formats 6-10 have them.
+    addParts("scan_flags", {partOf(15, [](unsigned v) { return v >> 5; }), partOf(14, [](unsigned v) { return v & 0xC0; })}, true);
+    add("scan_angle_rank", NumberType::I8, 1, 16, true);
+  }
+  add("user_data", NumberType::U8, 1, 17, true);
+  if (header.hasNir()) add("nir", NumberType::U16, 1, 36, true);
+  if (header.hasWaveforms()) add("wave_packet", NumberType::U8, 29, header.wavePacketOffset(), true);
+  addExtras(header, OwnColumns(header), fields);
+  return format;
+}
+
+bool lasRecordsTellAll(const LasHeader& header) {
   const OwnColumns own(header);
-  BatchFilling filling(header, count, batch);
-  copyExtras(header, own, filling);
-  filling.run(records);
-  batch.rgbWhite = unshiftedColours ? 255 : 65535;
+  return header.stations.empty() && !own.row && !own.scanner;
+}
+
+void decodeLasPoints(const LasHeader& header, const RecordFormat& format, const std::byte* records, std::size_t count, PointBatch& batch) {
+  const OwnColumns own(header);
+  fillBatch(format, records, count, batch);
   decodeOwn(header, own.row, records, count, batch.row);
   decodeOwn(header, own.column, records, count, batch.column);
   if (own.scanner)

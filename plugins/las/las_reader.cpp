@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -34,11 +36,11 @@ void checkBounds(LasHeader& header, const Bounds& found) {
 /// A batch, made on any thread, and the bounds of all that were made in it.
 struct MadeBatch {
   MadeBatch() = default;
-  MadeBatch(const LasHeader& header, const std::byte* records, std::size_t count, bool unshifted) {
-    fill(header, records, count, unshifted);
+  MadeBatch(const LasHeader& header, const RecordFormat& format, const std::byte* records, std::size_t count) {
+    fill(header, format, records, count);
   }
-  void fill(const LasHeader& header, const std::byte* records, std::size_t count, bool unshifted) {
-    decodeLasPoints(header, records, count, unshifted, batch);
+  void fill(const LasHeader& header, const RecordFormat& format, const std::byte* records, std::size_t count) {
+    decodeLasPoints(header, format, records, count, batch);
     Bounds here;  // in registers
     for (const auto& position : batch.position) here.add(position);
     bounds.add(here);
@@ -46,6 +48,17 @@ struct MadeBatch {
   PointBatch batch;
   Bounds bounds;
 };
+
+/// The least and the largest of the numbers that records begin with, axis by axis.
+std::pair<glm::ivec3, glm::ivec3> extentOf(const std::byte* records, std::size_t stride, std::size_t count) {
+  using Four = std::int32_t __attribute__((vector_size(16)));  // the fourth is another field: records are longer
+  Four low = Four{} + std::numeric_limits<std::int32_t>::max(), high = Four{} + std::numeric_limits<std::int32_t>::min();
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto here = lasValue<Four>(records, i * stride);
+    low = here < low ? here : low, high = here > high ? here : high;
+  }
+  return {{low[0], low[1], low[2]}, {high[0], high[1], high[2]}};
+}
 
 std::string readingWords(const std::string& path) {
   return "Reading " + std::filesystem::path(path).filename().string();
@@ -147,9 +160,10 @@ Result<std::vector<ImportWarning>> LasReader::read(const std::string& path,
   auto opened = OpenedFile::open(path, progress.part(0.0, 0.1));
   if (!opened) return fail(opened.error());
   LasHeader& header = opened->header;
+  const RecordFormat format = lasRecordFormat(header, opened->unshifted);
   Bounds found;
   const MakeBatch make = [&](const std::byte* records, std::size_t count) -> std::function<bool()> {
-    auto made = std::make_shared<MadeBatch>(header, records, count, opened->unshifted);
+    auto made = std::make_shared<MadeBatch>(header, format, records, count);
     return [made = std::move(made), &found, &sink] {
       found.add(made->bounds);
       return sink(made->batch);
@@ -166,10 +180,11 @@ Result<std::vector<ImportWarning>> LasReader::readAnyOrder(const std::string& pa
   auto opened = OpenedFile::open(path, progress.part(0.0, 0.1));
   if (!opened) return fail(opened.error());
   LasHeader& header = opened->header;
+  const RecordFormat format = lasRecordFormat(header, opened->unshifted);
   std::vector<MadeBatch> batches(static_cast<std::size_t>(workerCount()));
   const TakeRecords take = [&](std::uint64_t first, const std::byte* records, std::size_t count, int worker) {
     MadeBatch& made = batches[static_cast<std::size_t>(worker)];
-    made.fill(header, records, count, opened->unshifted);
+    made.fill(header, format, records, count);
     return sink(first, made.batch);
   };
   if (auto ok = alidade::readAnyOrder(*opened->file, header, take, progress.part(0.1, 1.0), readingWords(path)); !ok)
@@ -178,6 +193,41 @@ Result<std::vector<ImportWarning>> LasReader::readAnyOrder(const std::string& pa
   for (const MadeBatch& made : batches) found.add(made.bounds);
   checkBounds(header, found);
   return header.warnings;
+}
+
+Result<std::optional<std::vector<ImportWarning>>> LasReader::readRecords(const std::string& path, const RecordSink& sink,
+                                                                         const Progress& progress) const {
+  {
+    const auto file = ByteSource::open(path);
+    if (!file) return fail(file.error());
+    const auto header = readLasHeader(**file);
+    if (!header) return fail(header.error());
+    if (!lasRecordsTellAll(*header)) return std::nullopt;
+  }
+  auto opened = OpenedFile::open(path, progress.part(0.0, 0.1));
+  if (!opened) return fail(opened.error());
+  LasHeader& header = opened->header;
+  const RecordFormat format = lasRecordFormat(header, opened->unshifted);
+  struct Extent {
+    glm::ivec3 low{std::numeric_limits<std::int32_t>::max()}, high{std::numeric_limits<std::int32_t>::min()};
+  };
+  std::vector<Extent> extents(static_cast<std::size_t>(workerCount()));
+  const TakeRecords take = [&](std::uint64_t first, const std::byte* records, std::size_t count, int worker) {
+    const auto [low, high] = extentOf(records, format.bytes, count);
+    Extent& extent = extents[static_cast<std::size_t>(worker)];
+    extent.low = glm::min(extent.low, low), extent.high = glm::max(extent.high, high);
+    return sink(first, {format, records, count, low, high});
+  };
+  if (auto ok = alidade::readAnyOrder(*opened->file, header, take, progress.part(0.1, 1.0), readingWords(path)); !ok)
+    return fail(ok.error());
+  Bounds found;
+  for (const Extent& extent : extents) {
+    if (extent.low.x > extent.high.x) continue;
+    found.add(header.scale * glm::dvec3(extent.low) + header.offset);
+    found.add(header.scale * glm::dvec3(extent.high) + header.offset);
+  }
+  checkBounds(header, found);
+  return std::move(header.warnings);
 }
 
 Result<void> LasReader::sample(const std::string& path, std::uint64_t wanted, const BatchSink& sink,
@@ -199,9 +249,10 @@ Result<void> LasReader::sample(const std::string& path, std::uint64_t wanted, co
     some = sampleOf(**runs, *header, wanted);
   }
   // What the sample shows of the colours decides, so that it is read once: it is held until all of it is there.
+  const RecordFormat format = lasRecordFormat(*header, false);
   std::vector<std::shared_ptr<MadeBatch>> held;
   const MakeBatch make = [&](const std::byte* records, std::size_t count) -> std::function<bool()> {
-    auto made = std::make_shared<MadeBatch>(*header, records, count, false);
+    auto made = std::make_shared<MadeBatch>(*header, format, records, count);
     return [made = std::move(made), &held] {
       held.push_back(made);
       return true;

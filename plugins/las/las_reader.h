@@ -27,6 +27,8 @@ class LasReader : public ScanReader {
   bool readsAnyOrder() const override { return true; }
   Result<std::vector<ImportWarning>> readAnyOrder(const std::string& path, const NumberedSink& sink,
                                                   const Progress& progress) const override;
+  Result<std::optional<std::vector<ImportWarning>>> readRecords(const std::string& path, const RecordSink& sink,
+                                                                const Progress& progress) const override;
   /// Short blocks of a LAS file, the beginnings of a LAZ file's chunks.
   Result<void> sample(const std::string& path, std::uint64_t wanted, const BatchSink& sink,
                       const Progress& progress) const override;

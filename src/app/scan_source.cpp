@@ -92,6 +92,12 @@ ScanSource scanSourceOf(const ScanReader& reader, const std::string& path, const
       if (warnings != nullptr) addOnce(*read, *warnings);
       return {};
     };
+  source.readRecords = [&reader, path, warnings](const RecordSink& sink, const Progress& progress) -> Result<bool> {
+    const auto read = reader.readRecords(path, sink, progress);
+    if (!read) return fail(read.error());
+    if (*read && warnings != nullptr) addOnce(**read, *warnings);
+    return read->has_value();
+  };
   source.sample = [&reader, path](std::uint64_t wanted, const ScanSource::Sink& sink, const Progress& progress) {
     return reader.sample(path, wanted, sink, progress);
   };

@@ -8,11 +8,15 @@
 #include <cstring>
 #include <memory>
 #include <mutex>
+#include <limits>
 #include <new>
+#include <optional>
+#include <span>
 #include <type_traits>
 #include <unordered_map>
 
 #include "cloud/raw_bytes.h"
+#include "cloud/record_packing.h"
 #include "cloud/scan_reading.h"
 
 namespace alidade {
@@ -88,6 +92,28 @@ class Worker {
     return Outcome::Done;
   }
 
+  /// Records whose scale and offset are the lattice's.
+  Outcome take(std::uint64_t number, PointRecords records) {
+    if (records.count == 0) return Outcome::Done;
+    const RecordFormat& format = records.format;
+    if (!m_packing) {
+      if (!m_schema.covers(format)) return Outcome::NewColumns;
+      if (format.scale != m_lattice.scale || format.offset != m_lattice.offset) return Outcome::OffLattice;
+      m_packing.emplace(m_schema, format);
+      for (const RecordField& field : format.fields) {
+        if (!field.extra && field.name == "rgb") m_rgbAt = field.at;
+        if (!field.extra && field.name == "intensity") m_intensityAt = field.at;
+      }
+    }
+    keepUsable(records);
+    const glm::i64vec3 low = glm::i64vec3(records.low) - m_lattice.corner, high = glm::i64vec3(records.high) - m_lattice.corner;
+    if (records.count == 0) return Outcome::Done;
+    if (!m_lattice.counts(low) || !m_lattice.counts(high)) return Outcome::OffLattice;
+    pack(records);
+    send(number, records.count);
+    return Outcome::Done;
+  }
+
   RecordStreams::Writer& writer() { return m_writer; }
   const std::vector<std::uint64_t>& counts() const { return m_counts; }
   std::uint64_t dropped() const { return m_dropped; }
@@ -107,24 +133,80 @@ class Worker {
       const std::size_t some = std::min(kStretch, count - first);
       std::byte* out = m_records.data() + first * stride;
       if (!m_lattice.unitsOf(std::span(batch.position).subspan(first, some), units.data(), nullptr)) return false;
-      displayColours(batch, m_brightest, first, some, colours.data());
-      for (std::size_t i = 0; i < some; ++i) {
-        const glm::i64vec3& unit = units[i];
-        const glm::ivec3 tile(unit >> std::int64_t{16});
-        const glm::u16vec3 place(unit & std::int64_t{0xffff});
-        std::uint32_t cell = m_finder.find(tile, place);
-        if (cell == ChunkPlan::kNone) cell = otherCell(tile);
-        m_cells[first + i] = cell;
-        const std::uint64_t packed = static_cast<std::uint64_t>(place.x) | static_cast<std::uint64_t>(place.y) << 16 |
-                                     static_cast<std::uint64_t>(place.z) << 32 | static_cast<std::uint64_t>(colours[i]) << 48;
-        std::memcpy(out + i * stride, &packed, sizeof packed);
-      }
+      const auto part = [&](const auto& column) {
+        using Column = std::span<const typename std::decay_t<decltype(column)>::value_type>;
+        return column.size() == count ? Column(column).subspan(first, some) : Column();
+      };
+      displayColours(part(batch.rgb), batch.rgbWhite, part(batch.intensity), m_brightest, some, colours.data());
+      for (std::size_t i = 0; i < some; ++i) put(units[i], colours[i], first + i, out + i * stride);
       if (m_lattice.exactBytes() > 0)
         for (std::size_t i = 0; i < some; ++i)
           if (!m_lattice.packExact(batch.position[first + i], out + i * stride + m_layout.exactAt)) return false;
       packing.pack(first, some, out + m_layout.columnsAt, stride, stride - m_layout.columnsAt);
     }
     return true;
+  }
+
+  /// The point's eight bytes, and its cell.
+  void put(const glm::i64vec3& unit, std::uint16_t colour, std::size_t row, std::byte* out) {
+    const glm::ivec3 tile(unit >> std::int64_t{16});
+    const glm::u16vec3 place(unit & std::int64_t{0xffff});
+    std::uint32_t cell = m_finder.find(tile, place);
+    if (cell == ChunkPlan::kNone) cell = otherCell(tile);
+    m_cells[row] = cell;
+    const std::uint64_t packed = static_cast<std::uint64_t>(place.x) | static_cast<std::uint64_t>(place.y) << 16 |
+                                 static_cast<std::uint64_t>(place.z) << 32 | static_cast<std::uint64_t>(colour) << 48;
+    std::memcpy(out, &packed, sizeof packed);
+  }
+
+  static glm::ivec3 numbersOf(const std::byte* record) {
+    glm::ivec3 numbers;
+    std::memcpy(&numbers, record, sizeof numbers);
+    return numbers;
+  }
+
+  /// Leaves out the records that cannot be used.
+  void keepUsable(PointRecords& records) {
+    const auto usable = [&](const glm::ivec3& numbers) {
+      return isUsablePosition(records.format.scale * glm::dvec3(numbers) + records.format.offset);
+    };
+    if (usable(records.low) && usable(records.high)) return;
+    const std::size_t bytes = records.format.bytes, all = records.count;
+    m_usable.clear();
+    records.low = glm::ivec3(std::numeric_limits<std::int32_t>::max()), records.high = -records.low;
+    for (std::size_t i = 0; i < all; ++i) {
+      const std::byte* record = records.data + i * bytes;
+      const glm::ivec3 numbers = numbersOf(record);
+      if (!usable(numbers)) continue;
+      records.low = glm::min(records.low, numbers), records.high = glm::max(records.high, numbers);
+      m_usable.insert(m_usable.end(), record, record + bytes);
+    }
+    records.data = m_usable.data(), records.count = m_usable.size() / bytes;
+    m_dropped += all - records.count;
+  }
+
+  /// The records as the store's, and the cell of each.
+  void pack(const PointRecords& records) {
+    const std::size_t stride = m_layout.bytes, bytes = records.format.bytes;
+    m_records.resize(records.count * stride);
+    m_cells.resize(records.count);
+    constexpr std::size_t kStretch = 256;
+    std::array<std::uint16_t, kStretch> colours, intensities;
+    std::array<glm::u16vec3, kStretch> rgb;
+    for (std::size_t first = 0; first < records.count; first += kStretch) {
+      const std::size_t some = std::min(kStretch, records.count - first);
+      const std::byte* from = records.data + first * bytes;
+      std::byte* out = m_records.data() + first * stride;
+      const auto take = [&](std::size_t at, auto& column) {
+        for (std::size_t i = 0; i < some; ++i) std::memcpy(&column[i], from + i * bytes + at, sizeof column[i]);
+        return std::span<const typename std::decay_t<decltype(column)>::value_type>(column).first(some);
+      };
+      if (m_rgbAt) displayColours(take(*m_rgbAt, rgb), records.format.rgbWhite, {}, m_brightest, some, colours.data());
+      else displayColours({}, 0, m_intensityAt ? take(*m_intensityAt, intensities) : std::span<const std::uint16_t>(), m_brightest, some, colours.data());
+      for (std::size_t i = 0; i < some; ++i)
+        put(glm::i64vec3(numbersOf(from + i * bytes)) - m_lattice.corner, colours[i], first + i, out + i * stride);
+      m_packing->pack(from, some, out + m_layout.columnsAt, stride, stride - m_layout.columnsAt);
+    }
   }
 
   std::uint32_t otherCell(const glm::ivec3& tile) {
@@ -188,7 +270,10 @@ class Worker {
   OtherCells& m_others;
   CellFinder m_finder;
   RecordStreams::Writer m_writer;
+  std::optional<RecordPacking> m_packing;
+  std::optional<std::size_t> m_rgbAt, m_intensityAt;  ///< in the source's records
   RawVector<std::byte> m_records;
+  std::vector<std::byte> m_usable;
   std::vector<std::uint32_t> m_cells;
   std::vector<std::uint32_t> m_inBatch, m_next, m_met, m_sorted;  ///< by cell, by cell, cells, points
   std::vector<std::uint64_t> m_counts;
@@ -214,20 +299,26 @@ Result<DistributionResult> distribute(const ScanSource& source, const ChunkPlan&
   bool outOfMemory = false;
   for (int t = 0; t < options.threads; ++t)
     workers.push_back(std::make_unique<Worker>(plan, lattice, schema, options.brightestIntensity, others, streams));
-  const auto take = [&](std::uint64_t number, PointBatch& batch, int worker) {
+  const auto takeRun = [&](std::uint64_t number, auto& points, const auto& shape, int worker) {
     try {
-      const auto outcome = workers[static_cast<std::size_t>(worker)]->take(number, batch);
+      const auto outcome = workers[static_cast<std::size_t>(worker)]->take(number, points);
       if (outcome == DistributionResult::Outcome::Done) return true;
       std::lock_guard lock(mutex);
       result.outcome = outcome;
-      if (outcome == DistributionResult::Outcome::NewColumns) result.schema.include(batch);
+      if (outcome == DistributionResult::Outcome::NewColumns) result.schema.include(shape);
     } catch (const std::bad_alloc&) {
       std::lock_guard lock(mutex);
       outOfMemory = true;
     }
     return false;
   };
-  const auto read = readOnThreads(source, options.threads, take, progress);
+  const auto take = [&](std::uint64_t number, PointBatch& batch, int worker) { return takeRun(number, batch, batch, worker); };
+  TakeRecords takeRecords;
+  if (lattice.exact == ExactCoordinates::Lattice)
+    takeRecords = [&](std::uint64_t number, const PointRecords& records, int worker) {
+      return takeRun(number, records, records.format, worker);
+    };
+  const auto read = readOnThreads(source, options.threads, take, takeRecords, progress);
   Result<void> written;
   for (auto& worker : workers) {
     if (auto done = worker->writer().finish(); !done && written) written = done;

@@ -151,6 +151,11 @@ bool Lattice::unitsOf(std::span<const glm::dvec3> positions, glm::i64vec3* units
   return true;
 }
 
+bool Lattice::counts(const glm::i64vec3& unit) {
+  constexpr auto kFarthest = static_cast<std::int64_t>(kFarthestUnit);
+  return glm::all(glm::lessThan(glm::abs(unit), glm::i64vec3(kFarthest)));
+}
+
 std::size_t Lattice::exactBytes() const {
   switch (exact) {
     case ExactCoordinates::Lattice: return 0;

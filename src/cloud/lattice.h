@@ -45,6 +45,8 @@ struct Lattice {
   /// exactly on the lattice, or beyond what tiles can count; `failedAt` is its index.
   bool unitsOf(std::span<const glm::dvec3> positions, glm::i64vec3* units, std::size_t* failedAt) const;
 
+  /// Whether tiles reach to this unit, relative to the corner.
+  static bool counts(const glm::i64vec3& unit);
   /// Bytes a point of the exact column; 0 where there is none.
   std::size_t exactBytes() const;
   /// Writes the exact column's value of a position; false where it does not come back bit for bit.

@@ -109,14 +109,8 @@ ALIDADE_WIDEST void addToWords(const std::byte* __restrict column, std::size_t b
   }
 }
 
-/// 8-bit colours in a store whose white is 65535: 255 * 257 = 65535, and nothing is lost.
-void widenColours(std::byte* first, std::size_t count, std::size_t stride) {
-  for (std::size_t i = 0; i < count; ++i) {
-    std::array<std::uint16_t, 3> rgb;
-    std::memcpy(rgb.data(), first + i * stride, sizeof rgb);
-    for (std::uint16_t& channel : rgb) channel = static_cast<std::uint16_t>(channel * 257);
-    std::memcpy(first + i * stride, rgb.data(), sizeof rgb);
-  }
+bool hasRgb(const RecordFormat& format) {
+  return std::any_of(format.fields.begin(), format.fields.end(), [](const RecordField& f) { return !f.extra && f.name == "rgb"; });
 }
 
 std::uint16_t rgb565(unsigned r, unsigned g, unsigned b) {
@@ -135,24 +129,51 @@ bool isOwnColumn(const ColumnShape& shape) {
 }
 
 bool PointSchema::include(const PointBatch& batch) {
-  bool added = false;
-  for (const ColumnView& view : viewsOf(batch)) {
-    if (std::find(columns.begin(), columns.end(), view.shape) != columns.end()) continue;
-    columns.push_back(view.shape);
-    added = true;
-  }
-  if (!batch.rgb.empty() && batch.rgbWhite > rgbWhite) {
-    rgbWhite = batch.rgbWhite;
+  std::vector<ColumnShape> shapes;
+  for (const ColumnView& view : viewsOf(batch)) shapes.push_back(view.shape);
+  return include(shapes, batch.rgb.empty() ? 0 : batch.rgbWhite);
+}
+
+bool PointSchema::include(const RecordFormat& format) {
+  return include(shapesOf(format), hasRgb(format) ? format.rgbWhite : std::uint16_t{0});
+}
+
+bool PointSchema::include(const std::vector<ColumnShape>& shapes, std::uint16_t white) {
+  bool added = white > rgbWhite;
+  rgbWhite = std::max(rgbWhite, white);
+  for (const ColumnShape& shape : shapes) {
+    if (std::find(columns.begin(), columns.end(), shape) != columns.end()) continue;
+    columns.push_back(shape);
     added = true;
   }
   return added;
 }
 
 bool PointSchema::covers(const PointBatch& batch) const {
-  if (!batch.rgb.empty() && batch.rgbWhite > rgbWhite) return false;
-  for (const ColumnView& view : viewsOf(batch))
-    if (std::find(columns.begin(), columns.end(), view.shape) == columns.end()) return false;
-  return true;
+  return !PointSchema(*this).include(batch);
+}
+
+bool PointSchema::covers(const RecordFormat& format) const {
+  return !PointSchema(*this).include(format);
+}
+
+std::vector<ColumnShape> shapesOf(const RecordFormat& format) {
+  std::vector<ColumnShape> shapes;
+  for (const RecordField& field : format.fields) {
+    ColumnShape shape{field.name, field.type, field.components, field.extra};
+    while (std::find(shapes.begin(), shapes.end(), shape) != shapes.end()) ++shape.ordinal;
+    shapes.push_back(shape);
+  }
+  return shapes;
+}
+
+void widenColours(std::byte* first, std::size_t count, std::size_t stride) {
+  for (std::size_t i = 0; i < count; ++i) {
+    std::array<std::uint16_t, 3> rgb;
+    std::memcpy(rgb.data(), first + i * stride, sizeof rgb);
+    for (std::uint16_t& channel : rgb) channel = static_cast<std::uint16_t>(channel * 257);
+    std::memcpy(first + i * stride, rgb.data(), sizeof rgb);
+  }
 }
 
 std::size_t PointSchema::bytes() const {
@@ -210,19 +231,16 @@ void PointSchema::unpack(std::size_t index, const std::byte* bytes, std::size_t 
   });
 }
 
-void displayColours(const PointBatch& batch, std::uint16_t brightestIntensity, std::size_t first, std::size_t count,
-                    std::uint16_t* out) {
-  if (batch.rgb.size() == batch.size()) {
-    const int shift = batch.rgbWhite > 255 ? 8 : 0;
-    for (std::size_t i = 0; i < count; ++i) {
-      const glm::u16vec3& c = batch.rgb[first + i];
-      out[i] = rgb565(c.r >> shift & 255, c.g >> shift & 255, c.b >> shift & 255);
-    }
-  } else if (batch.intensity.size() == batch.size() && brightestIntensity > 0) {
+void displayColours(std::span<const glm::u16vec3> rgb, std::uint16_t rgbWhite, std::span<const std::uint16_t> intensity,
+                    std::uint16_t brightestIntensity, std::size_t count, std::uint16_t* out) {
+  if (rgb.size() == count) {
+    const int shift = rgbWhite > 255 ? 8 : 0;
+    for (std::size_t i = 0; i < count; ++i) out[i] = rgb565(rgb[i].r >> shift & 255, rgb[i].g >> shift & 255, rgb[i].b >> shift & 255);
+  } else if (intensity.size() == count && brightestIntensity > 0) {
     // Returns are few and bright at the top of the range: the root keeps the dark majority readable.
     const float white = 1.0f / brightestIntensity;
     for (std::size_t i = 0; i < count; ++i) {
-      const auto gray = static_cast<unsigned>(255.0f * std::sqrt(std::min(1.0f, batch.intensity[first + i] * white)) + 0.5f);
+      const auto gray = static_cast<unsigned>(255.0f * std::sqrt(std::min(1.0f, intensity[i] * white)) + 0.5f);
       out[i] = rgb565(gray, gray, gray);
     }
   } else {

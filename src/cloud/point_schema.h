@@ -12,6 +12,7 @@
 #include "cloud/lattice.h"
 #include "survey/number_type.h"
 #include "survey/point_batch.h"
+#include "survey/point_records.h"
 
 namespace alidade {
 
@@ -30,16 +31,21 @@ struct ColumnShape {
 /// True for a column that PointBatch has a place for, with the type it has there.
 bool isOwnColumn(const ColumnShape& shape);
 
+/// Of each of the format's fields.
+std::vector<ColumnShape> shapesOf(const RecordFormat& format);
+
 /// Which columns a store keeps: the union over the source's batches. A batch without a column that others
 /// have counts as zeros there.
 struct PointSchema {
   std::vector<ColumnShape> columns;
   std::uint16_t rgbWhite = 255;
 
-  /// Adds what this batch brings. True where something was added.
+  /// Adds what this batch, or what such records, bring. True where something was added.
   bool include(const PointBatch& batch);
+  bool include(const RecordFormat& format);
   /// True where nothing would be added.
   bool covers(const PointBatch& batch) const;
+  bool covers(const RecordFormat& format) const;
   std::size_t bytes() const;
 
   class Packing;
@@ -47,6 +53,9 @@ struct PointSchema {
   void unpack(std::size_t index, const std::byte* bytes, std::size_t count, PointBatch& batch) const;
 
   friend bool operator==(const PointSchema&, const PointSchema&) = default;
+
+ private:
+  bool include(const std::vector<ColumnShape>& shapes, std::uint16_t white);
 };
 
 /// How the points of one batch, which the schema covers, become records.
@@ -68,9 +77,12 @@ class PointSchema::Packing {
   std::vector<Column> m_columns;  ///< that the batch has
 };
 
-/// The colours to draw a batch's points first to first + count with: RGB, else intensity as gray, else a middle gray.
-/// `brightestIntensity` is what white stands for.
-void displayColours(const PointBatch& batch, std::uint16_t brightestIntensity, std::size_t first, std::size_t count,
-                    std::uint16_t* rgb565);
+/// 8-bit colours, of 3 numbers each and `stride` bytes apart, where white is 65535: 255 * 257 = 65535, and nothing is lost.
+void widenColours(std::byte* first, std::size_t count, std::size_t stride);
+
+/// The colours to draw `count` points with: RGB, else intensity as gray, else a middle gray. Columns that there are not
+/// are empty. `brightestIntensity` is what white stands for.
+void displayColours(std::span<const glm::u16vec3> rgb, std::uint16_t rgbWhite, std::span<const std::uint16_t> intensity,
+                    std::uint16_t brightestIntensity, std::size_t count, std::uint16_t* rgb565);
 
 }  // namespace alidade

@@ -99,9 +99,21 @@ class Workers {
 
 }  // namespace
 
-Result<void> readOnThreads(const ScanSource& source, int threads, const TakeBatch& take, const Progress& progress) {
+Result<void> readOnThreads(const ScanSource& source, int threads, const TakeBatch& take, const TakeRecords& takeRecords,
+                           const Progress& progress) {
+  Workers workers(threads);
+  if (source.readRecords && takeRecords) {
+    const auto sink = [&](std::uint64_t number, const PointRecords& records) {
+      const int worker = workers.borrow();
+      const bool more = !progress.cancelled() && takeRecords(number, records, worker);
+      workers.giveBack(worker);
+      return more;
+    };
+    const auto read = source.readRecords(sink, progress);
+    if (!read) return fail(read.error());
+    if (*read) return {};
+  }
   if (source.readAnyOrder) {
-    Workers workers(threads);
     const auto sink = [&](std::uint64_t number, PointBatch& batch) {
       const int worker = workers.borrow();
       const bool more = !progress.cancelled() && take(number, batch, worker);

@@ -10,6 +10,7 @@
 #include "base/error.h"
 #include "base/progress.h"
 #include "survey/point_batch.h"
+#include "survey/point_records.h"
 
 namespace alidade {
 
@@ -27,6 +28,9 @@ struct ScanSource {
   /// would have. Empty: the source has no threads of its own.
   using NumberedSink = std::function<bool(std::uint64_t number, PointBatch& batch)>;
   std::function<Result<void>(const NumberedSink& sink, const Progress& progress)> readAnyOrder;
+  /// The same points as the source's own records, on the threads that made them; false, and no point handed over, where
+  /// they do not come so. Empty: they never do.
+  std::function<Result<bool>(const RecordSink& sink, const Progress& progress)> readRecords;
   /// About `wanted` points taken evenly from the whole; empty: `read` is thinned.
   std::function<Result<void>(std::uint64_t wanted, const Sink& sink, const Progress& progress)> sample;
 };

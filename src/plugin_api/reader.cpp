@@ -21,6 +21,11 @@ Result<std::vector<ImportWarning>> ScanReader::readAnyOrder(const std::string& p
   return read(path, [&sink, number = std::uint64_t{0}](PointBatch& batch) mutable { return sink(number++, batch); }, progress);
 }
 
+Result<std::optional<std::vector<ImportWarning>>> ScanReader::readRecords(const std::string&, const RecordSink&,
+                                                                          const Progress&) const {
+  return std::nullopt;
+}
+
 Result<void> ScanReader::sample(const std::string& path, std::uint64_t wanted, const BatchSink& sink,
                                 const Progress& progress) const {
   const auto info = inspect(path);

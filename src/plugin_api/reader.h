@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -17,6 +18,7 @@
 #include "camera/camera.h"
 #include "survey/design_model.h"
 #include "survey/point_batch.h"
+#include "survey/point_records.h"
 #include "survey/project.h"
 
 namespace alidade {
@@ -83,6 +85,10 @@ class ScanReader : public Reader {
   /// Here: as `read`.
   virtual Result<std::vector<ImportWarning>> readAnyOrder(const std::string& path, const NumberedSink& sink,
                                                           const Progress& progress) const;
+  /// The same points as the file's own records, for those who need no columns; nothing, and no point handed over, where
+  /// records do not tell all that `read` does. Here: nothing.
+  virtual Result<std::optional<std::vector<ImportWarning>>> readRecords(const std::string& path, const RecordSink& sink,
+                                                                        const Progress& progress) const;
   /// Hands over about `wanted` points taken evenly from the whole file, as fast as the format allows:
   /// for a first picture. Here: every n-th of all points.
   virtual Result<void> sample(const std::string& path, std::uint64_t wanted, const BatchSink& sink,

@@ -116,6 +116,11 @@ Result<IndexReport> index(const Site& site, std::uint64_t memoryBytes) {
     if (auto read = reader.readAnyOrder(site.las, sink, progress); !read) return fail(read.error());
     return {};
   };
+  scan.readRecords = [&](const RecordSink& sink, const Progress& progress) -> Result<bool> {
+    const auto read = reader.readRecords(site.las, sink, progress);
+    if (!read) return fail(read.error());
+    return read->has_value();
+  };
   scan.sample = [&](std::uint64_t wanted, const ScanSource::Sink& sink, const Progress& progress) {
     return reader.sample(site.las, wanted, sink, progress);
   };

@@ -4,6 +4,8 @@
 #include <sys/stat.h>
 
 #include <atomic>
+#include <cstring>
+#include <limits>
 #include <thread>
 
 #include <fmt/format.h>
@@ -86,6 +88,123 @@ TEST(StoreFolder, IsTheSameWhateverTheOrderThatThreadsReadIn) {
   const auto store = openStore(scratch / "any.alidade-points");
   ASSERT_TRUE(store) << store.error().text();
   EXPECT_EQ(difference(*memory, *store->parts[0].points), "");
+}
+
+/// A scan whose batches and records hold the same, in a format made up here: numbers that cross words, a byte shared by
+/// two fields, one put together of two bytes, and points that no survey has.
+class RecordScan {
+ public:
+  static constexpr std::size_t kBytes = 36;
+
+  explicit RecordScan(std::uint16_t rgbWhite) {
+    m_format.bytes = kBytes;
+    m_format.scale = glm::dvec3(0.1), m_format.offset = {400000, 5500000, 100};
+    m_format.rgbWhite = rgbWhite;
+    RecordField::Part low{14, {}}, high{14, {}}, ends{35, {}};
+    for (unsigned v = 0; v < 256; ++v) {
+      low.values[v] = v & 7, high.values[v] = v >> 3 & 7;
+      ends.values[v] = static_cast<std::uint8_t>(v << 4);
+    }
+    m_format.fields = {{"rgb", NumberType::U16, 3, false, 15, {}},          {"intensity", NumberType::U16, 1, false, 12, {}},
+                       {"return_number", NumberType::U8, 1, false, 0, {low}}, {"return_count", NumberType::U8, 1, false, 0, {high}},
+                       {"gps_time", NumberType::F64, 1, false, 21, {}},       {"flags", NumberType::U8, 1, true, 0, {low, ends}},
+                       {"wave", NumberType::U8, 5, true, 29, {}},             {"angle", NumberType::I8, 1, true, 34, {}}};
+  }
+
+  ScanSource source(bool asRecords) const {
+    ScanSource scan = hallScan(kPoints);
+    scan.info.scale = m_format.scale, scan.info.offset = m_format.offset;
+    scan.info.bounds = {};
+    scan.read = [this](const ScanSource::Sink& sink, const Progress&) -> Result<void> {
+      for (std::uint64_t first = 0; first < kPoints; first += kRun) {
+        PointBatch batch = columns(first, std::min(kRun, kPoints - first));
+        if (!sink(batch)) break;
+      }
+      return {};
+    };
+    scan.sample = nullptr;
+    if (!asRecords) return scan;
+    scan.readRecords = [this](const RecordSink& sink, const Progress&) -> Result<bool> {
+      for (std::uint64_t first = 0; first < kPoints; first += kRun) {
+        const std::uint64_t count = std::min(kRun, kPoints - first);
+        std::vector<std::byte> bytes(count * kBytes);
+        glm::ivec3 low(std::numeric_limits<std::int32_t>::max()), high(std::numeric_limits<std::int32_t>::min());
+        for (std::uint64_t i = 0; i < count; ++i) {
+          write(first + i, bytes.data() + i * kBytes);
+          low = glm::min(low, placeOf(first + i)), high = glm::max(high, placeOf(first + i));
+        }
+        if (!sink(first, {m_format, bytes.data(), count, low, high})) break;
+      }
+      return true;
+    };
+    return scan;
+  }
+
+ private:
+  static constexpr std::uint64_t kRun = 30'000;
+
+  static std::uint64_t drawn(std::uint64_t i) {
+    std::uint64_t h = (i + 1) * 0x9e3779b97f4a7c15ull;
+    h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9ull;
+    return h ^ h >> 27;
+  }
+  static glm::ivec3 placeOf(std::uint64_t i) {
+    const std::uint64_t h = drawn(i);
+    if (i % 70'001 == 5) return {2'000'000'000, 0, 0};  // 2e8 m away
+    return {h % 90'000 - 45'000, h >> 20 & 0xffff, h >> 40 & 0xff};
+  }
+  std::uint16_t colourOf(std::uint64_t i, unsigned channel) const {
+    return static_cast<std::uint16_t>((i * (channel + 3)) % (m_format.rgbWhite + 1u));
+  }
+
+  void write(std::uint64_t i, std::byte* record) const {
+    const auto put = [&](std::size_t at, auto value) { std::memcpy(record + at, &value, sizeof value); };
+    put(0, placeOf(i));
+    put(12, static_cast<std::uint16_t>(i * 7));
+    put(14, static_cast<std::uint8_t>(i % 61));
+    for (unsigned c = 0; c < 3; ++c) put(15 + 2 * c, colourOf(i, c));
+    put(21, 3e8 + 1e-5 * static_cast<double>(i));
+    for (unsigned b = 0; b < 5; ++b) put(29 + b, static_cast<std::uint8_t>(i >> b));
+    put(34, static_cast<std::int8_t>(i % 180 - 90)), put(35, static_cast<std::uint8_t>(i % 3));
+  }
+
+  PointBatch columns(std::uint64_t first, std::uint64_t count) const {
+    PointBatch batch;
+    batch.rgbWhite = m_format.rgbWhite;
+    batch.extra = {{"flags", NumberType::U8, 1, {}}, {"wave", NumberType::U8, 5, {}}, {"angle", NumberType::I8, 1, {}}};
+    for (std::uint64_t i = first; i < first + count; ++i) {
+      batch.position.push_back(m_format.scale * glm::dvec3(placeOf(i)) + m_format.offset);
+      batch.rgb.emplace_back(colourOf(i, 0), colourOf(i, 1), colourOf(i, 2));
+      batch.intensity.push_back(static_cast<std::uint16_t>(i * 7));
+      batch.returnNumber.push_back(i % 61 & 7), batch.returnCount.push_back(i % 61 >> 3);
+      batch.gpsTime.push_back(3e8 + 1e-5 * static_cast<double>(i));
+      batch.extra[0].data.push_back(static_cast<std::byte>((i % 61 & 7) | (i % 3) << 4));
+      for (unsigned b = 0; b < 5; ++b) batch.extra[1].data.push_back(static_cast<std::byte>(i >> b));
+      batch.extra[2].data.push_back(static_cast<std::byte>(i % 180 - 90));
+    }
+    return batch;
+  }
+
+  RecordFormat m_format;
+};
+
+TEST(StoreFolder, IsTheSameFromRecordsAsFromColumns) {
+  const test::ScratchFolder scratch;
+  for (const std::uint16_t white : {255, 65535}) {
+    const RecordScan scan(white);
+    std::vector<StoreFolder> stores;
+    for (const bool asRecords : {false, true}) {
+      const std::string path = scratch / fmt::format("{}-{}.alidade-points", white, asRecords);
+      const auto report = index(scan.source(asRecords), path, optionsOf());
+      ASSERT_TRUE(report) << report.error().text();
+      EXPECT_EQ(report->dropped, 5u);
+      auto store = openStore(path);
+      ASSERT_TRUE(store) << store.error().text();
+      stores.push_back(std::move(*store));
+    }
+    EXPECT_EQ(stores[0].parts[0].manifest.lattice.exact, ExactCoordinates::Lattice);
+    EXPECT_EQ(difference(*stores[0].parts[0].points, *stores[1].parts[0].points), "");
+  }
 }
 
 TEST(StoreFolder, KeepsWhatTheScanSaysOfItself) {

@@ -180,6 +180,11 @@ TEST(LasReader, ExtraBytesNamedRowColumnAndScannerFillThoseColumns) {
   EXPECT_THAT(reading.all.row, ::testing::ElementsAre(1234567u));
   EXPECT_THAT(reading.all.column, ::testing::ElementsAre(89u));
   EXPECT_THAT(LasReader().inspect(path)->attributes, Contains("reflectance"));
+  // Columns of other types than the record's: its records alone would not tell them.
+  const auto never = [](std::uint64_t, const alidade::PointRecords&) { return ADD_FAILURE(), false; };
+  const auto records = LasReader().readRecords(path, never, Progress());
+  ASSERT_TRUE(records.has_value());
+  EXPECT_FALSE(records->has_value());
 }
 
 TEST(LasReader, ExtraBytesThatReachPastTheRecordAreIgnoredWithAWarning) {

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cstring>
 #include <filesystem>
+#include <limits>
 #include <map>
 #include <mutex>
 #include <numeric>
@@ -340,6 +342,42 @@ TEST(LasReading, PointsComeInAnyOrderWithTheirPlacesAndInColumnsThatAreUsedAgain
     const auto stop = [&](std::uint64_t, PointBatch&) { return ++calls, false; };
     EXPECT_TRUE(LasReader().readAnyOrder(path, stop, alidade::Progress()).has_value());
     EXPECT_LE(calls, alidade::workerCount());
+  }
+}
+
+TEST(LasReading, RecordsComeAsTheyStandWithTheirExtent) {
+  PointBatch points = wildPoints(40000, false, true, false, false);
+  points.row.clear(), points.column.clear(), points.scanner.clear();
+  for (const Kind kind : {Kind::Las, Kind::Laz}) {
+    const std::string path = pathFor("records.laz");
+    ASSERT_EQ(writeAll(kind, path, wildOptions(), {{points, {}}}), "");
+    const PointBatch all = readEverything(path).all;
+    std::atomic<std::size_t> seen{0};
+    std::mutex mutex;
+    const auto sink = [&](std::uint64_t number, const alidade::PointRecords& records) {
+      std::lock_guard lock(mutex);
+      glm::ivec3 low(std::numeric_limits<std::int32_t>::max()), high(std::numeric_limits<std::int32_t>::min());
+      for (std::size_t i = 0; i < records.count; ++i) {
+        const std::byte* record = records.data + i * records.format.bytes;
+        glm::ivec3 place;
+        std::memcpy(&place, record, sizeof place);
+        low = glm::min(low, place), high = glm::max(high, place);
+        EXPECT_EQ(records.format.scale * glm::dvec3(place) + records.format.offset, all.position[number + i]);
+        for (const alidade::RecordField& field : records.format.fields) {
+          if (field.name == "intensity") {
+            EXPECT_EQ(std::memcmp(record + field.at, &all.intensity[number + i], 2), 0);
+          }
+        }
+      }
+      EXPECT_EQ(records.low, low);
+      EXPECT_EQ(records.high, high);
+      seen += records.count;
+      return true;
+    };
+    const auto read = LasReader().readRecords(path, sink, alidade::Progress());
+    ASSERT_TRUE(read.has_value()) << read.error().text();
+    EXPECT_TRUE(read->has_value());
+    EXPECT_EQ(seen, points.size());
   }
 }
 
