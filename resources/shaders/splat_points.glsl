@@ -65,9 +65,11 @@ void drawFootprint(Run run, uvec3 steps, vec2 xy, vec2 at, float z, uint payload
   if (!(at.x + halfSize > -0.5 && at.x - halfSize < extent.x - 0.5 && at.y + halfSize > -0.5 &&
         at.y - halfSize < extent.y - 0.5)) return;
   vec2 along = vec2(0.0);
-  bool isTilted = size > 1.0 && tiltOf(surface.xyz, xy, at, along);
-  float bend = 0.0005 / (size * size);
   float h = min(size * (0.5 / lens.focal.x), 0.3);
+  bool isTilted = run.what.y != 0xffffffffu && size > 2.0;
+  bool hasPlane = isTilted && tiltOf(surface.xyz, xy, at, along);
+  if (!hasPlane) along = vec2(0.0);
+  float bend = (hasPlane ? 0.0005 : 1.6 * h) / (size * size);  // without a plane a dome
   float least = h * (h - 1.0), most = h * (h + 1.0);
   ivec2 first = max(ivec2(floor(at - halfSize)) + 1, ivec2(0));
   ivec2 last = min(ivec2(floor(at + halfSize)), ivec2(frame.xy) - 1);

@@ -78,7 +78,7 @@ DotImage drawDots(const std::vector<SplatLayer>& layers, const Camera& camera,
       }
     }
   };
-  drawRuns(runs, camera.width(), camera.height(), SplatPayload::Place, false, {}, merge);
+  drawRuns(runs, camera.width(), camera.height(), {.payload = SplatPayload::Place}, {}, merge);
   return dots;
 }
 

@@ -11,8 +11,13 @@ namespace {
 
 /// How much a footprint bends, as a part of its depth at its own width from the point.
 constexpr float kBend = 0.0005f;
+/// The same, as a part of half its width, where no plane is known: a dome, that shows where nothing better does. A square that
+/// faced the eye would stand out of the surface.
+constexpr float kDome = 0.4f;
 /// Wider footprints are drawn row by row.
 constexpr int kSideBySide = 4;
+/// Footprints of so many pixels and less are of one depth: a plane would change it by no more than a point of one pixel is off.
+constexpr float kFlat = 2.0f;
 
 /// A footprint's depth over the picture: 1 + t is how many times its point's inverse depth it has there, and t is linear, as a
 /// plane's is but for what the lens bends it within a few pixels. It ends where its depth leaves the point's by more than
@@ -55,7 +60,7 @@ ALIDADE_LENS_INLINE Floats halfWidthOf(const SplatView& view, const Floats& size
 }
 
 /// The plane through a point with normal n, n·P = d: 1/z = n·(x, y, 1) / d over undistorted x, y. Without a
-/// normal, or seen along the surface, there is no plane to follow.
+/// normal, or seen along the surface, there is no plane to follow, and the footprint is a dome.
 template <LensKind kind>
 ALIDADE_LENS_INLINE void layOnSurface(const SplatView& view, const Projected& p, const Floats& size, Footprints& f) {
   // How the lens moves a pixel for a small step in x and in y; larger far out, where a fisheye squeezes it.
@@ -72,13 +77,14 @@ ALIDADE_LENS_INLINE void layOnSurface(const SplatView& view, const Projected& p,
                nz = gatherFloats(view.cellNormals + 2, at);
   const Floats facing = nx * p.x + ny * p.y + nz;
   const Floats determinant = ux * vy - uy * vx;
-  f.flat = ~((size > 1.0f) & ((facing > 1e-3f) | (facing < -1e-3f)) & ((determinant > 1e-6f) | (determinant < -1e-6f)));
+  const Ints hasPlane = ((facing > 1e-3f) | (facing < -1e-3f)) & ((determinant > 1e-6f) | (determinant < -1e-6f));
+  f.flat = ~(size > kFlat);
+  const Floats h = halfWidthOf(view, size), zero = {};
   const Floats scale = 1.0f / (facing * determinant);
-  f.tilt.alongU = (nx * vy - ny * vx) * scale;
-  f.tilt.alongV = (ny * ux - nx * uy) * scale;
-  f.tilt.bend = kBend / (size * size);
+  f.tilt.alongU = hasPlane ? (nx * vy - ny * vx) * scale : zero;
+  f.tilt.alongV = hasPlane ? (ny * ux - nx * uy) * scale : zero;
+  f.tilt.bend = (hasPlane ? zero + kBend : 4.0f * kDome * h) / (size * size);
   // t from 1 / (1 + h) - 1 to 1 / (1 - h) - 1, but for cubes.
-  const Floats h = halfWidthOf(view, size);
   f.tilt.least = h * (h - 1.0f);
   f.tilt.most = h * (h + 1.0f);
 }
@@ -235,7 +241,7 @@ ALIDADE_LENS_INLINE void drawFootprints(const SplatView& view, const Projected& 
   f.flat = ~Ints{};
   f.tilt = Tilt<Floats>{};
   Floats halfU = half, halfV = half;
-  if (view.cellNormals) {
+  if (view.cellNormals && lanesOf(reaches & (size > kFlat)) != 0) {
     layOnSurface<kind>(view, p, size, f);
     // Where t is sure to leave its bounds there is nothing to look at: most of a floor's squares at a grazing angle.
     const Floats slopeU = magnitude(f.tilt.alongU), slopeV = magnitude(f.tilt.alongV);

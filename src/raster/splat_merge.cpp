@@ -35,11 +35,11 @@ ALIDADE_WIDEST void depthsOf(const std::uint32_t* pixels, std::size_t count, flo
   for (std::size_t i = 0; i < count; ++i) depth[i] = std::bit_cast<float>(pixels[i] == 0xffffffffu ? 0x7f800000u : pixels[i]);
 }
 
-ALIDADE_WIDEST void keepNearest(const std::uint64_t* plane, std::size_t count, std::uint64_t* pixels) {
-  for (std::size_t i = 0; i < count; ++i) pixels[i] = plane[i] < pixels[i] ? plane[i] : pixels[i];
+ALIDADE_WIDEST void nearestOf(const std::uint64_t* a, const std::uint64_t* b, std::size_t count, std::uint64_t* pixels) {
+  for (std::size_t i = 0; i < count; ++i) pixels[i] = a[i] < b[i] ? a[i] : b[i];
 }
-ALIDADE_WIDEST void keepNearest(const std::uint32_t* plane, std::size_t count, std::uint32_t* pixels) {
-  for (std::size_t i = 0; i < count; ++i) pixels[i] = plane[i] < pixels[i] ? plane[i] : pixels[i];
+ALIDADE_WIDEST void nearestOf(const std::uint32_t* a, const std::uint32_t* b, std::size_t count, std::uint32_t* pixels) {
+  for (std::size_t i = 0; i < count; ++i) pixels[i] = a[i] < b[i] ? a[i] : b[i];
 }
 
 /// 1 where the middle row's pixel lies behind what is within two pixels on each of its four sides.
@@ -111,8 +111,10 @@ void MergedRows<Pixel>::join(int y) {
     std::ranges::fill(row.pixels, static_cast<Pixel>(-1));
   } else {
     const std::size_t first = static_cast<std::size_t>(y) * count;
-    std::memcpy(row.pixels.data(), m_planes.planes[0] + first, count * sizeof(Pixel));
-    for (std::size_t k = 1; k < m_planes.planes.size(); ++k) keepNearest(m_planes.planes[k] + first, count, row.pixels.data());
+    const auto& planes = m_planes.planes;
+    if (planes.size() == 1) std::memcpy(row.pixels.data(), planes[0] + first, count * sizeof(Pixel));
+    for (std::size_t k = 1; k < planes.size(); ++k)
+      nearestOf(k == 1 ? planes[0] + first : row.pixels.data(), planes[k] + first, count, row.pixels.data());
   }
   if (m_closeHoles) depthsOf(row.pixels.data(), count, row.depth.data() + kReach);
 }

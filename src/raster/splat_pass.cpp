@@ -31,8 +31,8 @@ constexpr std::size_t kAlignment = kHugePage;
 /// so they are wider by this; one pixel as long as that is how far apart they are (closeHoles fills in).
 constexpr double kCover = 1.5;
 constexpr std::uint32_t kPointsPerTask = 16384;
-/// What is hidden is looked up when the nearest seventh of the points is drawn.
-constexpr std::uint64_t kNearestShare = 7, kFewToHide = 500'000;
+/// What is hidden is looked up when the nearest share of the wide points is drawn, then each time that they are some times as many.
+constexpr std::uint64_t kNearestShare = 8, kMoreBeforeNext = 3, kFewToHide = 300'000;
 constexpr std::size_t kRowsPerBand = 64;
 
 /// Blocks of past frames, a few of them; two frames of one size need no allocation.
@@ -103,84 +103,160 @@ std::vector<Task> tasksOf(std::span<const SplatRun> runs, bool onlyChecked) {
   return tasks;
 }
 
+/// Fits the surface's cells of runs that draw footprints of more than a pixel, and points the runs at them.
+class SurfaceFits {
+ public:
+  SurfaceFits(std::span<SplatRun> runs, const RigidTransform* cameraFromWorld) : m_runs(runs), m_laid(runs.size(), false) {
+    if (cameraFromWorld != nullptr) m_rotation = cameraFromWorld->rotationMatrix();
+  }
+
+  /// Runs by number; those that have their cells already keep them.
+  void lay(std::span<const std::uint32_t> runs) {
+    if (!m_rotation) return;
+    std::vector<std::uint32_t> missing;
+    for (const std::uint32_t r : runs)
+      if (!m_laid[r] && !m_runs[r].view.onePixel) m_laid[r] = true, missing.push_back(r);
+    auto& cells = m_cells.emplace_back(missing.size());
+    parallelFor(missing.size(), 1, [&](std::size_t first, std::size_t last, int) {
+      for (std::size_t i = first; i < last; ++i) fit(m_runs[missing[i]], cells[i]);
+    });
+  }
+
+ private:
+  void fit(SplatRun& run, CellNormals& cells) const {
+    cells = cellNormals({run.points, run.count}, run.spacing, *m_rotation);
+    run.view.cellNormals = &cells.normal[0].x;
+    std::copy(cells.low.begin(), cells.low.end(), run.view.cellLow);
+    run.view.cellShift = cells.shift;
+  }
+
+  std::span<SplatRun> m_runs;
+  std::optional<glm::dmat3> m_rotation;
+  std::vector<bool> m_laid;
+  std::vector<std::vector<CellNormals>> m_cells;
+};
+
 /// The device's plane; null where there is none or it failed.
-const void* drawOnDevice(SplatDevice* device, std::span<const SplatRun> runs, int width, int height,
+const void* drawOnDevice(SplatDevice* device, std::span<const SplatRun> runs, SurfaceFits& fits, int width, int height,
                          SplatPayload payload) {
   if (!device) return nullptr;
   std::vector<const SplatRun*> unchecked;
-  for (const SplatRun& run : runs)
-    if (!run.view.checkDomain) unchecked.push_back(&run);
+  std::vector<std::uint32_t> numbers;
+  for (std::uint32_t r = 0; r < runs.size(); ++r)
+    if (!runs[r].view.checkDomain) unchecked.push_back(&runs[r]), numbers.push_back(r);
+  fits.lay(numbers);
   auto plane = device->draw(unchecked, width, height, payload);
   if (plane) return *plane;
   logWarning("The processor draws the points: " + plane.error().text());
   return nullptr;
 }
 
-/// The nearest tasks, after which it pays to look what they hide; all where it does not: with few points, or where the
-/// nearest are of one pixel, seen from afar.
-std::size_t nearestPart(std::span<const SplatRun> runs, const std::vector<Task>& tasks) {
-  std::uint64_t all = 0, drawn = 0, wide = 0;
-  for (const Task& task : tasks) all += task.count;
-  if (all < kFewToHide) return tasks.size();
-  std::size_t i = 0;
-  for (; i < tasks.size() && drawn < all / kNearestShare; ++i) {
-    drawn += tasks[i].count;
-    if (!runs[tasks[i].run].view.onePixel) wide += tasks[i].count;
+/// Where, in tasks from the nearest on, it pays to look what is hidden: after more and more of the points that are drawn wide.
+/// Nowhere with few of them.
+std::vector<std::size_t> looksOf(std::span<const SplatRun> runs, const std::vector<Task>& tasks) {
+  std::uint64_t wide = 0, drawn = 0;
+  for (const Task& task : tasks) wide += runs[task.run].view.onePixel ? 0 : task.count;
+  std::vector<std::size_t> looks;
+  if (wide < kFewToHide) return looks;
+  std::uint64_t next = wide / kNearestShare;
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    if (drawn >= next && drawn < wide) looks.push_back(i), next = kMoreBeforeNext * drawn;
+    drawn += runs[tasks[i].run].view.onePixel ? 0 : tasks[i].count;
   }
-  return 2 * wide > drawn ? i : tasks.size();
+  return looks;
 }
 
+/// Draws one frame's runs into one plane a thread.
 template <class Pixel>
-void drawPlanes(std::span<const SplatRun> runs, int width, int height, SplatPayload payload, bool closeHoles, SplatDevice* device,
-                const std::function<void(const SplatPlanes<Pixel>&, int, int)>& merge) {
-  const SplatKernel& kernel = splatKernel();
-  const std::size_t pixels = static_cast<std::size_t>(width) * height;
-  const std::size_t bytes = pixels * sizeof(Pixel);
-  std::vector<std::unique_ptr<SplatScratch>> scratch(workerCount());
-  const auto* drawn = static_cast<const Pixel*>(drawOnDevice(device, runs, width, height, payload));
-  std::vector<Task> tasks = tasksOf(runs, drawn != nullptr);
-  if (closeHoles) std::ranges::stable_sort(tasks, {}, [&](const Task& task) { return runs[task.run].nearest; });
+class PlaneDrawer {
+ public:
+  PlaneDrawer(std::span<SplatRun> runs, int width, int height, const SplatDrawing& drawing)
+      : m_runs(runs), m_width(width), m_height(height), m_payload(drawing.payload), m_closeHoles(drawing.closeHoles),
+        m_fits(runs, drawing.onSurface), m_scratch(static_cast<std::size_t>(workerCount())) {}
 
-  const HiddenTiles* hidden = nullptr;
-  const auto drawTasks = [&](std::size_t begin, std::size_t end) {
-    parallelFor(end - begin, 1, [&](std::size_t first, std::size_t last, int worker) {
-      if (!scratch[worker]) {
-        scratch[worker] = std::make_unique<SplatScratch>(bytes);
-        std::memset(scratch[worker]->data(), 0xff, bytes);
+  SplatPlanes<Pixel> draw(SplatDevice* device) {
+    m_onDevice = static_cast<const Pixel*>(drawOnDevice(device, m_runs, m_fits, m_width, m_height, m_payload));
+    std::vector<Task> tasks = tasksOf(m_runs, m_onDevice != nullptr);
+    if (m_closeHoles) std::ranges::stable_sort(tasks, {}, [&](const Task& task) { return m_runs[task.run].nearest; });
+    std::size_t first = 0;
+    if (m_closeHoles) {
+      for (const std::size_t look : looksOf(m_runs, tasks)) {
+        drawTasks(std::span(tasks).subspan(first, look - first));
+        if (!m_hidden) m_hidden.emplace(m_width, m_height);
+        m_hidden->look(planes());
+        first = look;
       }
-      SplatTarget target;
-      target.payload = payload;
-      if constexpr (sizeof(Pixel) == 4) {
-        target.depth = static_cast<Pixel*>(scratch[worker]->data());
-      } else {
-        target.packed = static_cast<Pixel*>(scratch[worker]->data());
-      }
-      if (hidden) target.farthest = hidden->farthest(), target.tileColumns = hidden->columns();
-      for (std::size_t i = begin + first; i < begin + last; ++i) {
-        const SplatRun& run = runs[tasks[i].run];
-        if (hidden && hidden->hides(run)) continue;
-        target.payloadBase = run.payloadBase + (payload == SplatPayload::Index ? tasks[i].first : 0);
-        kernel.draw(run.view, &run.points[tasks[i].first].x, tasks[i].count, target);
-      }
-    });
-  };
-  const auto planesNow = [&] {
+    }
+    drawTasks(std::span(tasks).subspan(first));
+    return planes();
+  }
+
+ private:
+  SplatPlanes<Pixel> planes() const {
     SplatPlanes<Pixel> planes;
-    if (drawn) planes.planes.push_back(drawn);
-    for (const auto& block : scratch)
+    if (m_onDevice) planes.planes.push_back(m_onDevice);
+    for (const auto& block : m_scratch)
       if (block) planes.planes.push_back(static_cast<const Pixel*>(block->data()));
     return planes;
-  };
-  const std::size_t near = closeHoles ? nearestPart(runs, tasks) : tasks.size();
-  drawTasks(0, near);
-  std::optional<HiddenTiles> tiles;
-  if (near < tasks.size()) {
-    tiles.emplace(width, height);
-    tiles->look(planesNow());
-    hidden = &*tiles;
-    drawTasks(near, tasks.size());
   }
-  const SplatPlanes<Pixel> planes = planesNow();
+
+  void drawTasks(std::span<const Task> tasks) {
+    std::vector<std::uint8_t> isHidden(tasks.size(), 0);
+    if (m_hidden) {
+      parallelFor(tasks.size(), 8, [&](std::size_t first, std::size_t last, int) {
+        for (std::size_t i = first; i < last; ++i) isHidden[i] = m_hidden->hides(m_runs[tasks[i].run]);
+      });
+    }
+    std::vector<Task> shown;
+    std::vector<std::uint32_t> runs;
+    for (std::size_t i = 0; i < tasks.size(); ++i)
+      if (isHidden[i] == 0) shown.push_back(tasks[i]), runs.push_back(tasks[i].run);
+    m_fits.lay(runs);
+    parallelFor(shown.size(), 1, [&](std::size_t first, std::size_t last, int worker) {
+      const SplatTarget target = targetOf(worker);
+      for (std::size_t i = first; i < last; ++i) drawTask(shown[i], target);
+    });
+  }
+
+  SplatTarget targetOf(int worker) {
+    const std::size_t bytes = static_cast<std::size_t>(m_width) * m_height * sizeof(Pixel);
+    auto& block = m_scratch[static_cast<std::size_t>(worker)];
+    if (!block) {
+      block = std::make_unique<SplatScratch>(bytes);
+      std::memset(block->data(), 0xff, bytes);
+    }
+    SplatTarget target;
+    target.payload = m_payload;
+    if constexpr (sizeof(Pixel) == 4) {
+      target.depth = static_cast<Pixel*>(block->data());
+    } else {
+      target.packed = static_cast<Pixel*>(block->data());
+    }
+    if (m_hidden) target.farthest = m_hidden->farthest(), target.tileColumns = m_hidden->columns();
+    return target;
+  }
+
+  void drawTask(const Task& task, SplatTarget target) const {
+    const SplatRun& run = m_runs[task.run];
+    target.payloadBase = run.payloadBase + (m_payload == SplatPayload::Index ? task.first : 0);
+    splatKernel().draw(run.view, &run.points[task.first].x, task.count, target);
+  }
+
+  std::span<SplatRun> m_runs;
+  int m_width, m_height;
+  SplatPayload m_payload;
+  bool m_closeHoles;
+  SurfaceFits m_fits;
+  std::vector<std::unique_ptr<SplatScratch>> m_scratch;
+  const Pixel* m_onDevice = nullptr;
+  std::optional<HiddenTiles> m_hidden;
+};
+
+template <class Pixel>
+void drawPlanes(std::span<SplatRun> runs, int width, int height, const SplatDrawing& drawing, SplatDevice* device,
+                const std::function<void(const SplatPlanes<Pixel>&, int, int)>& merge) {
+  PlaneDrawer<Pixel> drawer(runs, width, height, drawing);
+  const SplatPlanes<Pixel> planes = drawer.draw(device);
   parallelFor(static_cast<std::size_t>(height), kRowsPerBand, [&](std::size_t first, std::size_t last, int) {
     merge(planes, static_cast<int>(first), static_cast<int>(last));
   });
@@ -351,33 +427,15 @@ SplatRun makeRun(const PointStore& store, const SelectedRange& range, const Rigi
   return run;
 }
 
-std::vector<CellNormals> layFootprints(std::span<SplatRun> runs, const RigidTransform& cameraFromWorld) {
-  std::vector<SplatRun*> wide;
-  for (SplatRun& run : runs)
-    if (!run.view.onePixel) wide.push_back(&run);
-  std::vector<CellNormals> normals(wide.size());
-  const glm::dmat3 rotation = cameraFromWorld.rotationMatrix();
-  parallelFor(wide.size(), 1, [&](std::size_t first, std::size_t last, int) {
-    for (std::size_t i = first; i < last; ++i) {
-      SplatView& view = wide[i]->view;
-      normals[i] = cellNormals({wide[i]->points, wide[i]->count}, wide[i]->spacing, rotation);
-      view.cellNormals = &normals[i].normal[0].x;
-      std::copy(normals[i].low.begin(), normals[i].low.end(), view.cellLow);
-      view.cellShift = normals[i].shift;
-    }
-  });
-  return normals;
-}
-
 void drawRuns(
-    std::span<const SplatRun> runs, int width, int height, SplatPayload payload, bool closeHoles,
+    std::span<SplatRun> runs, int width, int height, const SplatDrawing& drawing,
     const std::function<void(const SplatPlanes<std::uint32_t>&, int, int)>& mergeDepth,
     const std::function<void(const SplatPlanes<std::uint64_t>&, int, int)>& mergePacked,
     SplatDevice* device) {
-  if (payload == SplatPayload::None) {
-    drawPlanes<std::uint32_t>(runs, width, height, payload, closeHoles, device, mergeDepth);
+  if (drawing.payload == SplatPayload::None) {
+    drawPlanes<std::uint32_t>(runs, width, height, drawing, device, mergeDepth);
   } else {
-    drawPlanes<std::uint64_t>(runs, width, height, payload, closeHoles, device, mergePacked);
+    drawPlanes<std::uint64_t>(runs, width, height, drawing, device, mergePacked);
   }
 }
 

@@ -64,16 +64,21 @@ SplatView baseView(const Camera& camera, const SplatOptions& options);
 SplatRun makeRun(const PointStore& store, const SelectedRange& range, const RigidTransform& cameraFromWorld,
                  const SplatView& base, const SplatOptions& options);
 
-/// Fits the surface's cells of every run that draws footprints of more than a pixel, and points the runs at
-/// them; the result must outlive the drawing.
-std::vector<CellNormals> layFootprints(std::span<SplatRun> runs, const RigidTransform& cameraFromWorld);
+/// How a frame's runs are drawn.
+struct SplatDrawing {
+  SplatPayload payload = SplatPayload::None;
+  /// Where holes will be closed, the processor leaves out what HiddenTiles finds hidden.
+  bool closeHoles = false;
+  /// Where footprints of more than a pixel lie in the surface, which is fitted to the runs that need it: the pose that these
+  /// were made with. Null: they face the eye.
+  const RigidTransform* onSurface = nullptr;
+};
 
 /// Draws the runs on all cores, one private plane a thread, then hands the planes to `merge` for
 /// bands of rows [first, last), on all cores too. payload None draws 32-bit pixels and calls the
-/// first; anything else 64-bit ones and the second. A device draws the runs that need no domain check. Where holes
-/// will be closed, the processor leaves out what HiddenTiles finds hidden.
+/// first; anything else 64-bit ones and the second. A device draws the runs that need no domain check.
 void drawRuns(
-    std::span<const SplatRun> runs, int width, int height, SplatPayload payload, bool closeHoles,
+    std::span<SplatRun> runs, int width, int height, const SplatDrawing& drawing,
     const std::function<void(const SplatPlanes<std::uint32_t>&, int, int)>& mergeDepth,
     const std::function<void(const SplatPlanes<std::uint64_t>&, int, int)>& mergePacked,
     SplatDevice* device = nullptr);

@@ -111,9 +111,6 @@ bool closesHoles(const SplatOptions& options) {
 void splatGroup(const std::vector<SplatLayer>& layers, const LayerGroup& group, const Camera& camera,
                 const RigidTransform& cameraFromWorld, const SplatOptions& options, SplatImages& images) {
   std::vector<SplatRun> runs = runsOf(layers, group, camera, cameraFromWorld, options);
-  const std::vector<CellNormals> normals = options.planar && !options.fixedSize
-                                               ? layFootprints(runs, cameraFromWorld)
-                                               : std::vector<CellNormals>();
   const GroupPoints points(layers, group);
   const SplatPayload payload = options.ids      ? SplatPayload::Index
                                : options.colour ? SplatPayload::Colour
@@ -144,7 +141,8 @@ void splatGroup(const std::vector<SplatLayer>& layers, const LayerGroup& group, 
       else takeColours(pixels, rowSize, images.depth.row(y), reinterpret_cast<std::uint32_t*>(images.colour.row(y)));
     }
   };
-  drawRuns(runs, width, height, payload, closeHoles, mergeDepth, mergePacked, options.device);
+  const SplatDrawing drawing{payload, closeHoles, options.planar && !options.fixedSize ? &cameraFromWorld : nullptr};
+  drawRuns(runs, width, height, drawing, mergeDepth, mergePacked, options.device);
 }
 
 }  // namespace
