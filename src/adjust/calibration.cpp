@@ -48,6 +48,7 @@ class Calibration {
   Network networkOf(const std::vector<int>& pictures, double sigmaPx) const;
   Result<NetworkSummary> adjust(const Network& network, bool robust, const Progress& progress) const;
   Result<std::optional<std::string>> fit();
+  Result<std::optional<std::string>> fitHolding(const std::string& letters);
   Result<void> approach();
   void take(const NetworkSummary& adjusted);
   void describe(const NetworkSummary& adjusted);
@@ -65,6 +66,7 @@ class Calibration {
   std::vector<RigidTransform> m_poses;  ///< one a picture
   Intrinsics m_lens;
   double m_sigmaPx = 1;
+  std::string m_heldLetters;  ///< parameters whose names begin so stay 0
   CalibrationSummary m_summary;
 };
 
@@ -80,6 +82,7 @@ Network Calibration::networkOf(const std::vector<int>& pictures, double sigmaPx)
   NetworkCamera camera;
   camera.name = "camera", camera.intrinsics = m_lens;
   camera.freeFocal = camera.freePrincipalPoint = camera.freeDistortion = true;
+  for (const std::string& name : parameterNames(m_lens.model)) camera.held.push_back(m_heldLetters.find(name[0]) != std::string::npos);
   network.cameras.push_back(camera);
   const double boardSigma = m_options.boardSigmaM;
   for (std::size_t i = 0; i < m_corners.size(); ++i) {
@@ -109,8 +112,8 @@ Result<NetworkSummary> Calibration::adjust(const Network& network, bool robust, 
 }
 
 /// The models on the way to one with many coefficients: each starts from the one before, where its own coefficients
-/// are still 0.
-std::vector<CameraModel> wayTo(CameraModel model) {
+/// are still 0. Without its denominator one does not come from a model that has it.
+std::vector<CameraModel> wayTo(CameraModel model, bool withDenominator) {
   switch (model) {
     case CameraModel::OpenCvFisheye: return {};
     case CameraModel::SimplePinhole:
@@ -119,7 +122,9 @@ std::vector<CameraModel> wayTo(CameraModel model) {
     case CameraModel::BrownSkewed: return {CameraModel::SimpleRadial, CameraModel::OpenCv5};
     case CameraModel::OpenCv12:
     case CameraModel::OpenCv14:
-    case CameraModel::BrownHighOrder: return {CameraModel::SimpleRadial, CameraModel::OpenCv5, CameraModel::OpenCv8};
+    case CameraModel::BrownHighOrder:
+      if (!withDenominator) return {CameraModel::SimpleRadial, CameraModel::OpenCv5};
+      return {CameraModel::SimpleRadial, CameraModel::OpenCv5, CameraModel::OpenCv8};
     default: return {CameraModel::SimpleRadial};
   }
 }
@@ -127,7 +132,7 @@ std::vector<CameraModel> wayTo(CameraModel model) {
 Result<void> Calibration::approach() {
   std::vector<int> all(m_pictures.size());
   std::iota(all.begin(), all.end(), 0);
-  for (const CameraModel model : wayTo(m_options.model)) {
+  for (const CameraModel model : wayTo(m_options.model, m_heldLetters.find('q') == std::string::npos)) {
     const Intrinsics before = m_lens;
     m_lens = asModel(m_lens, model);
     Network network = networkOf(all, 0.5);
@@ -146,8 +151,27 @@ void Calibration::take(const NetworkSummary& adjusted) {
   for (std::size_t i = 0; i < m_poses.size(); ++i) m_poses[i] = adjusted.poses[i].bodyFromWorld;
 }
 
-/// Nothing where it converged, else why not.
+/// Nothing where it converged, else why not. The high-order Brown form has more radial coefficients than a lens can fill: six of a
+/// series and three of its denominator draw the same curves in many ways. Where the pictures do not choose, the denominator
+/// stays 1, and where there is hardly any decentring, its growth 0.
 Result<std::optional<std::string>> Calibration::fit() {
+  const Intrinsics lens = m_lens;
+  const std::vector<RigidTransform> poses = m_poses;
+  auto why = fitHolding("");
+  if (m_options.model != CameraModel::BrownHighOrder) return why;
+  for (const auto& [letters, names] : {std::pair("q", "q1, q2 and q3"), {"qt", "q1 to q3 and t3 to t6"}}) {
+    if (!why || !*why) break;
+    m_lens = lens, m_poses = poses, m_summary.iterations = 0;
+    why = fitHolding(letters);
+    if (why && !*why)
+      m_summary.warnings.push_back(fmt::format("{} stayed 0: the pictures do not tell them from the other coefficients", names));
+  }
+  return why;
+}
+
+/// The same with what begins with one of the letters at 0.
+Result<std::optional<std::string>> Calibration::fitHolding(const std::string& letters) {
+  m_heldLetters = letters;
   if (const auto near = approach(); !near) return fail(near.error());
   m_lens = asModel(m_lens, m_options.model);
   std::vector<int> all(m_pictures.size());

@@ -53,7 +53,8 @@ struct ClockOffset {
 /// A search over the range comes first, Gauss-Newton from its best. The standard deviation is the
 /// sandwich estimator (Liang and Zeger 1986), clustered both ways (Cameron, Gelbach and Miller 2011): by pair, because the tracks of
 /// a pair share their poses' errors, with pairs near in time alike (Newey and West 1987); and by region of the picture, because tracks slide
-/// along the same edges from pair to pair.
+/// along the same edges from pair to pair. A few seconds hold few clusters, and of few it comes out small: on pieces of the sample video of 2 s the
+/// errors' root mean square was 1.4 times the one stated, of 3 s 1.1 times, of 6 s 0.65 times. Give it five seconds or more.
 ///
 /// Not found, with the reason: too few tracks; a camera that stands still or moves evenly, whose relative poses do not
 /// depend on the offset; another place in the range that explains the pictures as well; the best at the end of

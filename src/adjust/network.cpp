@@ -11,17 +11,13 @@
 
 #include "adjust/network_checks.h"
 #include "adjust/network_description.h"
+#include "adjust/robust.h"
 
 namespace alidade {
 
 namespace {
 
 constexpr double largestScale = 20;
-
-/// Among n right observations the worst one lies beyond this in one set of a hundred thousand: P(|r| > k) = exp(-k²/2).
-double chanceLimit(std::size_t n) {
-  return std::sqrt(2 * std::log(1e5 * static_cast<double>(std::max<std::size_t>(n, 1))));
-}
 
 double medianOf(std::vector<double> values) {
   if (values.empty()) return 0;
@@ -206,12 +202,7 @@ Result<NetworkSummary> Adjustment::run() {
 }  // namespace
 
 Result<void> NetworkOptions::validate() const {
-  if (!std::isfinite(huberSigmas) || huberSigmas < 0)
-    return fail("The robust loss's width must be zero or positive", "huberSigmas", "Give 2.5, or 0 for none");
-  if (!std::isfinite(outlierSigmas) || !(outlierSigmas > 0))
-    return fail("The limit for outliers must be positive", "outlierSigmas", "Give 3.5");
-  if (maximumIterations < 1 || maximumIterations > 100000)
-    return fail("The number of iterations must lie between 1 and 100000", "maximumIterations", "Give 100");
+  if (const auto valid = checkRobustOptions(huberSigmas, outlierSigmas, maximumIterations); !valid) return valid;
   for (const At& a : at)
     if (!std::isfinite(a.world.x + a.world.y + a.world.z))
       return fail("A point for the expected error is not finite", "at", "Give its coordinates in metres");

@@ -41,6 +41,7 @@ struct NetworkCamera {
   std::string name;
   Intrinsics intrinsics;
   bool freeFocal = false, freePrincipalPoint = false, freeDistortion = false;
+  std::vector<bool> held = {};  ///< parameters in the model's order that stay as they are all the same; empty: none
 };
 
 struct NetworkFrame {
@@ -48,8 +49,8 @@ struct NetworkFrame {
   int pose = -1, camera = -1;
   int mount = -1;                         ///< -1: the pose is the camera's own
   int pictureWidth = 0, pictureHeight = 0;  ///< of the picture itself, where known: it must fit the calibration
-  /// Picks and edges are held to the pose of the row that they were seen in; the motion is taken as known. The frame's pose is
-  /// that of the middle row, which depths refer to.
+  /// Picks and edges are held to the pose of the row that they were seen in, the depth of a picked point too; the motion is
+  /// taken as known. The frame's pose is that of the middle row, which other depths refer to.
   RollingShutter shutter = {};
 };
 
@@ -162,6 +163,7 @@ struct NetworkResidual {
   int frame = -1, point = -1;
   std::string name;
   glm::dvec2 residualPx{0};  ///< projected - observed; of an edge: across it. NaN where the kind has no pixels
+  double residualM = 0;      ///< of a depth: adjusted - observed; of a surface: off it along the normal. Else NaN
   double sigmas = 0;         ///< length in standard deviations
   bool outlier = false, heldOut = false;
 };
@@ -171,6 +173,7 @@ struct ResidualGroup {
   bool heldOut = false;
   int count = 0, outliers = 0;
   double rmsPx = 0;      ///< NaN where the kind has no pixels
+  double rmsM = 0;       ///< NaN but for depths and surfaces
   double rmsSigmas = 0;  ///< one for honest sigmas, a little less where much was adjusted
 };
 
@@ -194,6 +197,11 @@ struct CameraAccuracy {
   double correlation(int a, int b) const;  ///< 0 where one is locked
 };
 
+/// How well a mount is known; zero where it was locked.
+struct MountAccuracy {
+  glm::dvec3 offsetStdM{0}, rotationStdRad{0};
+};
+
 /// A known point that took no part: where the adjusted rays of two pictures or more meet, against its coordinates.
 struct CheckPoint {
   int point = -1;
@@ -210,6 +218,7 @@ struct NetworkSummary {
   int redundancy = 0;
   std::vector<AdjustedPose> poses; ///< the start where not converged
   std::vector<RigidTransform> cameraFromBody;  ///< of each mount
+  std::vector<MountAccuracy> mountAccuracy;    ///< of each mount; empty without covariance
   std::vector<Intrinsics> cameras;
   std::vector<CameraAccuracy> cameraAccuracy;  ///< of each camera; empty without covariance
   std::vector<double> clockOffsetSecs, clockStdSecs;  ///< of each trajectory
@@ -227,6 +236,9 @@ struct NetworkSummary {
 
 /// The camera's pose of a frame after adjustment.
 RigidTransform cameraFromWorld(const Network& network, const NetworkSummary& summary, int frame);
+
+/// A line a mount: where it sits on its body, how far it moved, how well it is known.
+std::string mountsText(const Network& network, const NetworkSummary& summary);
 
 /// Least squares over all of the network at once: Levenberg-Marquardt on normal equations from which the points are
 /// eliminated (Schur complement; Triggs et al., Bundle adjustment, a modern synthesis, 2000), observations made

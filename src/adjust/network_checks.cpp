@@ -61,6 +61,10 @@ Result<void> checkFrames(const Network& n) {
     if (!std::isfinite(n.poses[i].timeSecs)) return notFinite(what);
   }
   for (std::size_t i = 0; i < n.cameras.size(); ++i)
+    if (!n.cameras[i].held.empty() && n.cameras[i].held.size() != n.cameras[i].intrinsics.parameters().size())
+      return fail(fmt::format("{} parameters of {} are held or not, it has {}", n.cameras[i].held.size(), quoted("camera", n.cameras[i].name, i),
+                              n.cameras[i].intrinsics.parameters().size()));
+  for (std::size_t i = 0; i < n.cameras.size(); ++i)
     if (const auto valid = n.cameras[i].intrinsics.validate(); !valid)
       return fail(valid.error().in(quoted("camera", n.cameras[i].name, i)));
   for (std::size_t i = 0; i < n.mounts.size(); ++i)

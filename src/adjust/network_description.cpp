@@ -19,6 +19,8 @@ namespace alidade {
 namespace {
 
 constexpr double noNumber = std::numeric_limits<double>::quiet_NaN();
+/// Beyond this two unknowns can hardly be told apart.
+constexpr double kHighCorrelation = 0.95;
 constexpr double chiSquared95 = 5.991464547107979;  // two degrees of freedom
 
 std::vector<int> blocksOf(const Term& term) {
@@ -110,9 +112,33 @@ void describeCameras(const NetworkTerms& terms, const NetworkState& state, const
   }
 }
 
+void describeMounts(const NetworkTerms& terms, const NormalSystem& normals, NetworkSummary& summary) {
+  summary.mountAccuracy.resize(summary.cameraFromBody.size());
+  for (std::size_t i = 0; i < summary.mountAccuracy.size(); ++i) {
+    const int block = terms.layout().mountBlock[i];
+    if (block < 0) continue;
+    const Eigen::MatrixXd covariance = normals.covariance({block});
+    for (int k = 0; k < 3; ++k) {
+      summary.mountAccuracy[i].offsetStdM[k] = std::sqrt(std::max(0.0, covariance(k, k)));
+      summary.mountAccuracy[i].rotationStdRad[k] = std::sqrt(std::max(0.0, covariance(3 + k, 3 + k)));
+    }
+  }
+}
+
+/// Where nothing but the focal length tells how far away the scene is, no single axis of the world need show it.
+void describeFocalAndDistance(const Network& network, NetworkSummary& summary) {
+  for (std::size_t i = 0; i < network.cameras.size(); ++i) {
+    const std::vector<double>& all = summary.cameraAccuracy[i].focalWithDistance;
+    const auto worst = std::max_element(all.begin(), all.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+    if (worst != all.end() && std::abs(*worst) > kHighCorrelation)
+      summary.correlations.push_back(fmt::format("the focal length of {} and how far away its pictures were taken can hardly be told "
+                                                 "apart (correlation {:.3f}); add points nearer or farther, or lock the focal length",
+                                                 network.cameras[i].name, *worst));
+  }
+}
+
 /// Pairs of unknowns that a frame hangs on with a correlation above 0.95.
 void describeCorrelations(const NetworkTerms& terms, const NormalSystem& normals, NetworkSummary& summary) {
-  constexpr double high = 0.95;
   const auto& blocks = terms.layout().blocks;
   std::map<std::pair<std::string, std::string>, double> found;
   for (std::size_t f = 0; f < terms.network().frames.size(); ++f) {
@@ -127,7 +153,7 @@ void describeCorrelations(const NetworkTerms& terms, const NormalSystem& normals
         const double product = covariance(r, r) * covariance(c, c);
         if (!(product > 0)) continue;
         const double correlation = covariance(r, c) / std::sqrt(product);
-        if (std::abs(correlation) < high) continue;
+        if (std::abs(correlation) < kHighCorrelation) continue;
         const auto name = [&](int i) { return unknownName(terms.network(), terms.layout(), names[i].first, names[i].second); };
         found[{name(c), name(r)}] = correlation;
       }
@@ -158,21 +184,23 @@ void describeCheckPoints(const NetworkTerms& terms, const NetworkState& state, N
 
 void describeResiduals(const NetworkTerms& terms, const NetworkState& state, const std::vector<char>& active,
                        NetworkSummary& summary) {
-  struct Sum { ResidualGroup group; double pixels = 0, sigmas = 0; int fitted = 0; };
+  struct Sum { ResidualGroup group; double pixels = 0, metres = 0, sigmas = 0; int fitted = 0; };
   std::map<std::pair<int, bool>, Sum> groups;
   const auto prepared = terms.prepare(state);
   const Network& network = terms.network();
   std::vector<double> pixelSquares(network.poses.size(), 0);
+  std::vector<int> inPixels(network.poses.size(), 0);
   TermValue value;
   for (std::size_t t = 0; t < terms.terms().size(); ++t) {
     const Term& term = terms.terms()[t];
-    value.pixels = glm::dvec2(noNumber);
+    value.pixels = glm::dvec2(noNumber), value.metres = noNumber;
     const bool valued = (term.point < 0 || std::isfinite(state.points[term.point].x)) &&
                         terms.evaluate(state, prepared, term, false, value);
     NetworkResidual r;
     r.kind = term.kind, r.index = term.index, r.frame = term.frame, r.point = term.point;
     r.name = residualName(terms, static_cast<int>(t));
     r.residualPx = valued ? value.pixels : glm::dvec2(noNumber);
+    r.residualM = valued ? value.metres : noNumber;
     r.sigmas = valued ? std::sqrt(value.squares()) : std::numeric_limits<double>::infinity();
     r.heldOut = term.heldOut;
     r.outlier = !term.heldOut && !active[t];
@@ -184,13 +212,15 @@ void describeResiduals(const NetworkTerms& terms, const NetworkState& state, con
     if (valued && !r.outlier) {
       ++sum.fitted;
       sum.pixels += glm::dot(value.pixels, value.pixels);
+      sum.metres += value.metres * value.metres;
       sum.sigmas += value.squares() / value.rows;
       if (!term.heldOut) {
         summary.finalCost += 0.5 * value.squares();
         summary.redundancy += value.rows;
         if (pose) {
           ++pose->observations;
-          if (std::isfinite(value.pixels.x)) pixelSquares[network.frames[term.frame].pose] += glm::dot(value.pixels, value.pixels);
+          const int at = network.frames[term.frame].pose;
+          if (std::isfinite(value.pixels.x)) pixelSquares[at] += glm::dot(value.pixels, value.pixels), ++inPixels[at];
         }
       }
     }
@@ -198,9 +228,10 @@ void describeResiduals(const NetworkTerms& terms, const NetworkState& state, con
     summary.residuals.push_back(std::move(r));
   }
   for (std::size_t i = 0; i < summary.poses.size(); ++i)
-    if (summary.poses[i].observations > 0) summary.poses[i].rmsPx = std::sqrt(pixelSquares[i] / summary.poses[i].observations);
+    if (inPixels[i] > 0) summary.poses[i].rmsPx = std::sqrt(pixelSquares[i] / inPixels[i]);
   for (auto& [key, sum] : groups) {
     sum.group.rmsPx = std::sqrt(sum.pixels / sum.fitted);
+    sum.group.rmsM = std::sqrt(sum.metres / sum.fitted);
     sum.group.rmsSigmas = std::sqrt(sum.sigmas / sum.fitted);
     summary.groups.push_back(sum.group);
   }
@@ -261,7 +292,9 @@ NetworkSummary describe(const NetworkTerms& terms, const NetworkState& state, co
   if (!normals) return summary;
   describePoses(terms, *normals, summary);
   describeCameras(terms, state, *normals, summary);
+  describeMounts(terms, *normals, summary);
   describeCorrelations(terms, *normals, summary);
+  describeFocalAndDistance(terms.network(), summary);
   for (std::size_t i = 0; i < summary.clockStdSecs.size(); ++i)
     if (terms.layout().clockBlock[i] >= 0)
       summary.clockStdSecs[i] = std::sqrt(std::max(0.0, normals->covariance({terms.layout().clockBlock[i]})(0, 0)));

@@ -39,7 +39,8 @@ Result<PoseState> posedByPoints(const Network& network, const NetworkLayout& lay
   const std::string name = frameOfPose < 0 ? fmt::format("pose {}", pose + 1) : frameName(network, frameOfPose);
   if (frameOfPose < 0)
     return fail(fmt::format("{} has no pose to start from", name), name, "Give an approximate pose");
-  const auto found = findStartPose(Camera(network.cameras[network.frames[frameOfPose].camera].intrinsics), seen);
+  const auto found = findStartPose(Camera(network.cameras[network.frames[frameOfPose].camera].intrinsics), seen,
+                                   network.frames[frameOfPose].shutter);
   if (!found) return fail(fmt::format("{} has no pose to start from: {}", name, found.error().what), name, found.error().advice);
   return stateOf(*found, layout.origin);
 }

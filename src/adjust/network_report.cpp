@@ -42,11 +42,11 @@ std::string numberOrDash(double value) {
 }
 
 void writeGroups(Out out, const NetworkSummary& summary) {
-  fmt::format_to(out, "\n  {:<22} {:>8} {:>9} {:>9} {:>11}\n", "Residuals", "number", "outliers", "rms px", "rms sigmas");
+  fmt::format_to(out, "\n  {:<22} {:>8} {:>9} {:>9} {:>9} {:>11}\n", "Residuals", "number", "outliers", "rms px", "rms mm", "rms sigmas");
   for (const ResidualGroup& g : summary.groups) {
     const std::string name = fmt::format("{}{}", residualKindName(g.kind), g.heldOut ? ", held out" : "");
-    fmt::format_to(out, "  {:<22} {:>8} {:>9} {:>9} {:>11}\n", name, g.count, g.outliers, numberOrDash(g.rmsPx),
-                   numberOrDash(g.rmsSigmas));
+    fmt::format_to(out, "  {:<22} {:>8} {:>9} {:>9} {:>9} {:>11}\n", name, g.count, g.outliers, numberOrDash(g.rmsPx),
+                   numberOrDash(1000 * g.rmsM), numberOrDash(g.rmsSigmas));
   }
 }
 
@@ -66,17 +66,56 @@ void writePoses(Out out, const Network& network, const NetworkSummary& summary) 
   if (summary.poses.size() > most) fmt::format_to(out, "  … and {} more\n", summary.poses.size() - most);
 }
 
+void writeCalibrations(Out out, const Network& network, const NetworkSummary& summary) {
+  for (std::size_t i = 0; i < summary.cameraAccuracy.size(); ++i) {
+    if (summary.cameraAccuracy[i].covariance.empty()) continue;
+    const Intrinsics& lens = summary.cameras[i];
+    const auto names = parameterNames(lens.model);
+    const auto was = network.cameras[i].intrinsics.parameters(), values = lens.parameters();
+    fmt::format_to(out, "\n  {:<22} {:>16} {:>16} {:>14}\n", network.cameras[i].name, "before", "adjusted", "± std");
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      const double std = summary.cameraAccuracy[i].std(static_cast<int>(k));
+      const bool pixels = names[k][0] == 'f' || names[k][0] == 'c';
+      fmt::format_to(out, "  {:<22} {:>16.{}f} {:>16.{}f} {:>14}\n", names[k], was[k], pixels ? 3 : 8, values[k], pixels ? 3 : 8,
+                     std > 0 ? fmt::format("{:.{}f}", std, pixels ? 3 : 8) : std::string("locked"));
+    }
+  }
+}
+
+}  // namespace
+
+std::string mountsText(const Network& network, const NetworkSummary& summary) {
+  std::string text;
+  auto out = std::back_inserter(text);
+  for (std::size_t i = 0; i < summary.cameraFromBody.size(); ++i) {
+    const RigidTransform was = network.mounts[i].cameraFromBody, is = summary.cameraFromBody[i];
+    const glm::dvec3 at = is.centre(), mm = 1000.0 * (at - was.centre());
+    fmt::format_to(out, "Mount {}: at {:.4f} {:.4f} {:.4f} m on its body, moved {:.1f} {:.1f} {:.1f} mm, turned {:.2f} mgon", network.mounts[i].name,
+                   at.x, at.y, at.z, mm.x, mm.y, mm.z, gonFromRadians(1000 * rotationAngleBetween(was, is)));
+    if (i < summary.mountAccuracy.size() && summary.mountAccuracy[i].offsetStdM != glm::dvec3(0)) {
+      const glm::dvec3 std = 1000.0 * summary.mountAccuracy[i].offsetStdM, mgon = summary.mountAccuracy[i].rotationStdRad * gonFromRadians(1000);
+      fmt::format_to(out, "; standard deviations {:.1f} {:.1f} {:.1f} mm, {:.2f} {:.2f} {:.2f} mgon about the camera's axes", std.x, std.y, std.z,
+                     mgon.x, mgon.y, mgon.z);
+    }
+    fmt::format_to(out, "\n");
+  }
+  return text;
+}
+
+namespace {
+
 void writeResiduals(Out out, const Network& network, const NetworkSummary& summary) {
   constexpr std::size_t most = 60;
   std::vector<const NetworkResidual*> sorted;
   for (const NetworkResidual& r : summary.residuals) sorted.push_back(&r);
   std::stable_sort(sorted.begin(), sorted.end(), [](const auto* a, const auto* b) { return a->sigmas > b->sigmas; });
-  fmt::format_to(out, "\n  {:<20} {:<14} {:<12} {:>9} {:>9} {:>8}\n", "Worst first", "frame", "kind", "du px", "dv px", "sigmas");
+  fmt::format_to(out, "\n  {:<20} {:<14} {:<12} {:>9} {:>9} {:>9} {:>8}\n", "Worst first", "frame", "kind", "du px", "dv px", "mm", "sigmas");
   for (std::size_t i = 0; i < std::min(most, sorted.size()); ++i) {
     const NetworkResidual& r = *sorted[i];
-    fmt::format_to(out, "  {:<20} {:<14} {:<12} {:>9} {:>9} {:>8}{}{}\n", r.name,
+    fmt::format_to(out, "  {:<20} {:<14} {:<12} {:>9} {:>9} {:>9} {:>8}{}{}\n", r.name,
                    r.frame < 0 ? std::string() : network.frames[r.frame].name, residualKindName(r.kind),
-                   numberOrDash(r.residualPx.x), numberOrDash(r.residualPx.y), numberOrDash(r.sigmas),
+                   numberOrDash(r.residualPx.x), numberOrDash(r.residualPx.y), numberOrDash(1000 * r.residualM),
+                   numberOrDash(r.sigmas),
                    r.outlier ? "  outlier" : "", r.heldOut ? "  held out" : "");
   }
   if (sorted.size() > most) fmt::format_to(out, "  … and {} more\n", sorted.size() - most);
@@ -95,6 +134,8 @@ std::string NetworkSummary::report(const Network& network) const {
     writeGroups(out, *this);
   }
   writePoses(out, network, *this);
+  writeCalibrations(out, network, *this);
+  text += mountsText(network, *this);
   for (std::size_t i = 0; i < clockOffsetSecs.size(); ++i)
     fmt::format_to(out, "  Clock offset {:.4f} s, standard deviation {:.4f} s\n", clockOffsetSecs[i], clockStdSecs[i]);
   for (const CheckPoint& c : checkPoints)

@@ -16,6 +16,10 @@ namespace alidade {
 namespace {
 
 constexpr double infinity = std::numeric_limits<double>::infinity();
+/// Damping that shortens no step worth mentioning.
+constexpr double kLightDamping = 1e-8;
+/// Half the squared length of a step in standard deviations: a hundredth of one is as good as standing still.
+constexpr double kStill = 0.5 * 0.01 * 0.01;
 
 }  // namespace
 
@@ -65,7 +69,7 @@ NetworkFit fitNetwork(const NetworkTerms& terms, NormalSystem& normals, const st
   fit.initialCost = fit.cost = networkCost(terms, fit.state, active, huberSigmas);
   if (!std::isfinite(fit.cost)) return fit;
   double damping = 1e-4, growth = 2;
-  bool fresh = false;
+  bool fresh = false, doubted = false;
   while (fit.iterations < maximumIterations) {
     if (progress.cancelled()) {
       fit.cancelled = true;
@@ -79,17 +83,29 @@ NetworkFit fitNetwork(const NetworkTerms& terms, NormalSystem& normals, const st
     double gain = -1, promised = 0;
     if (normals.solve(damping)) {
       promised = normals.promisedDecrease();
-      const bool last = promised <= 1e-9 * fit.cost + 1e-12;
+      const bool undamped = damping <= kLightDamping;
+      const bool last = promised <= 1e-9 * fit.cost + 1e-12 || (doubted && undamped && promised <= kStill);
       NetworkState next = terms.layout().moved(fit.state, normals.blockStep().data(), normals.pointStep());
       const double cost = networkCost(terms, next, active, huberSigmas);
       if (promised > 0) gain = (fit.cost - cost) / promised;
       if (cost <= fit.cost) fit.state = std::move(next), fit.cost = cost, fresh = false;
       if (last) {
-        fit.converged = true;
-        return fit;
+        // A step that is damped enough promises little anywhere: only the undamped one tells that this is a minimum.
+        if (undamped || doubted) {
+          fit.converged = undamped;
+          return fit;
+        }
+        doubted = true;
+        damping = kLightDamping, growth = 2;
+        continue;
       }
+    } else if (doubted && damping <= kLightDamping) {
+      // Something is left open, as in a free network; what is not open stands at its minimum.
+      fit.converged = true;
+      return fit;
     }
     if (gain > 1e-4) {
+      doubted = false;
       const double good = 2 * gain - 1;
       damping = std::max(1e-14, damping * std::max(0.03, 1 - good * good * good));
       growth = 2;

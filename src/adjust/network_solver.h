@@ -21,7 +21,7 @@ struct NetworkFit {
 };
 
 /// Minimises over the terms that `normals` uses. Damping after Nielsen (1999); converged where the linear model
-/// promises less than 1e-9 of the cost.
+/// promises less than 1e-9 of the cost with no damping to speak of.
 NetworkFit fitNetwork(const NetworkTerms& terms, NormalSystem& normals, const std::vector<char>& active,
                       NetworkState start, double huberSigmas, int maximumIterations, const Progress& progress);
 

@@ -31,6 +31,7 @@ std::vector<bool> lockedOf(const NetworkCamera& camera) {
   std::vector<bool> locked(varying.parameterCount(), !camera.freeDistortion);
   for (int i = 0; i < varying.focalCount(); ++i) locked[i] = !camera.freeFocal;
   for (int i = 0; i < 2; ++i) locked[varying.focalCount() + i] = !camera.freePrincipalPoint;
+  for (std::size_t i = 0; i < camera.held.size(); ++i) locked[i] = locked[i] || camera.held[i];
   return locked;
 }
 

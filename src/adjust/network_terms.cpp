@@ -3,6 +3,8 @@
 
 #include "adjust/network_terms.h"
 
+#include <map>
+
 #include <Eigen/Cholesky>
 
 namespace alidade {
@@ -53,12 +55,14 @@ void NetworkTerms::addObservations() {
     term.heldOut = heldOut, term.robust = robust;
     m_terms.push_back(term);
   };
+  std::map<std::pair<int, int>, int> rows;  // of a frame's points, for their depths
   constexpr std::array kinds{ResidualKind::Control, ResidualKind::Scan, ResidualKind::Tie};
   for (std::size_t i = 0; i < m_network.observations.size(); ++i) {
     const PictureObservation& o = m_network.observations[i];
     const auto kind = kinds[static_cast<std::size_t>(m_network.points[o.point].kind)];
     Term term = frameTerm(o.frame);
     term.row = rowPose(o.frame, o.pixel);
+    if (term.row >= 0 && !m_network.depths.empty()) rows[{o.frame, o.point}] = term.row;
     add(term, kind, i, o.point, o.heldOut, true);
   }
   for (std::size_t i = 0; i < m_network.edges.size(); ++i) {
@@ -71,6 +75,7 @@ void NetworkTerms::addObservations() {
     const DepthObservation& o = m_network.depths[i];
     Term term = frameTerm(o.frame);
     term.blocks[2] = -1;
+    if (const auto seen = rows.find({o.frame, o.point}); seen != rows.end()) term.row = seen->second;
     add(term, ResidualKind::Depth, i, o.point, o.heldOut, true);
   }
   for (std::size_t i = 0; i < m_network.points.size(); ++i) {
@@ -242,11 +247,13 @@ bool NetworkTerms::depth(const Prepared& prepared, const Term& term, const Netwo
   const Prepared::View& view = prepared.views[term.frame];
   const glm::dvec3 inBody = view.bodyFromWorld * (state.points[term.point] - view.centre);
   const glm::dvec3 turned = view.mounted ? view.cameraFromBody * inBody : inBody;
-  const double z = view.mounted ? turned.z + view.translation.z : inBody.z;
+  const glm::dvec3 inCamera = view.mounted ? turned + view.translation : inBody;
+  const RowPose* seenAt = term.row < 0 ? nullptr : &m_rowPoses[term.row];
+  const double z = seenAt ? (*seenAt * inCamera).z : inCamera.z;
   to.rows = 1;
-  to.residual[0] = z - seen.depthM;
+  to.residual[0] = to.metres = z - seen.depthM;
   if (derivatives) {
-    const glm::dvec3 row(0, 0, 1);
+    const glm::dvec3 axis(0, 0, 1), row = seenAt ? axis * seenAt->rotation : axis;
     const glm::dvec3 byBody = view.mounted ? row * view.cameraFromBody : row;
     const glm::dvec3 byPoint = byBody * view.bodyFromWorld, byRotation = glm::cross(inBody, byBody);
     const glm::dvec3 byMount = glm::cross(turned, row);
@@ -280,6 +287,7 @@ bool NetworkTerms::evaluate(const NetworkState& state, const Prepared& prepared,
       const glm::dvec3 n = glm::normalize(hold.normal) / hold.sigmaM;
       to.rows = 1;
       to.residual[0] = glm::dot(n, state.points[term.point] - (hold.through - m_layout.origin));
+      to.metres = hold.sigmaM * to.residual[0];
       for (int i = 0; i < 3; ++i) to.byPoint[i] = n[i];
       return true;
     }

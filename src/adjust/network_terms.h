@@ -32,6 +32,7 @@ struct TermValue {
   int rows = 0;
   std::array<double, mostRows> residual{};
   glm::dvec2 pixels{std::numeric_limits<double>::quiet_NaN()};  ///< unwhitened, where the kind has any
+  double metres = std::numeric_limits<double>::quiet_NaN();     ///< unwhitened, of depths and surfaces
   std::array<double, mostRows * 3> byPoint;      ///< row by row
   std::array<std::array<double, mostRows * VaryingCamera::largestCount>, 3> byBlock;  ///< row by row, block.size wide
 

@@ -17,17 +17,21 @@ PoseProblem::PoseProblem(const Camera& camera, const RigidTransform& start,
   for (int i = 0; i < 3; ++i)
     if (!options.lockPosition[i]) m_free.push_back(i);
   if (!options.lockAttitude) m_free.insert(m_free.end(), {3, 4, 5});
+  if (options.shutter.isOn())
+    for (const ResectionObservation& seen : observations) {
+      const RigidTransform row = exponential(options.shutter.motion * options.shutter.secsAtRow(seen.pixel.y, camera.height()));
+      m_rows.push_back({row.rotationMatrix(), row.translation});
+    }
   weighAt(m_start);
 }
 
 void PoseProblem::weighAt(const PoseState& state) {
   m_weights.resize(m_observations.size());
-  const glm::dmat3 rotation = glm::mat3_cast(state.rotation);
   for (int i = 0; i < size(); ++i) {
     const ResectionObservation& seen = m_observations[i];
     glm::dmat2 covariance(seen.sigmaPx * seen.sigmaPx);
     if (seen.sigmaM > 0) {
-      const glm::dvec3 p = rotation * ((seen.world - m_origin) - state.centre);
+      const glm::dvec3 p = inCamera(state, i);
       ProjectionJacobian by;
       if (p.z > 0 && m_camera.project(p, by)) {
         // An isotropic point: no rotation in J J^T.
@@ -47,6 +51,11 @@ glm::dvec3 PoseProblem::inCamera(const PoseState& state, const glm::dvec3& world
   return state.rotation * ((world - m_origin) - state.centre);
 }
 
+glm::dvec3 PoseProblem::inCamera(const PoseState& state, int observation) const {
+  const glm::dvec3 p = inCamera(state, m_observations[observation].world);
+  return m_rows.empty() ? p : m_rows[observation].rotation * p + m_rows[observation].translation;
+}
+
 bool PoseProblem::positionFree() const {
   return !m_free.empty() && m_free.front() < 3;
 }
@@ -59,9 +68,10 @@ int PoseProblem::pointsNeeded() const {
   return allFree() ? 4 : (freeCount() + 1) / 2;
 }
 
-std::optional<Linearised> PoseProblem::lineariseAt(const PoseState& state, const glm::dvec3& world) const {
+std::optional<Linearised> PoseProblem::lineariseAt(const PoseState& state, const glm::dvec3& world, const RowPose* row) const {
   const glm::dmat3 rotation = glm::mat3_cast(state.rotation);
-  const glm::dvec3 p = rotation * ((world - m_origin) - state.centre);
+  const glm::dvec3 middle = rotation * ((world - m_origin) - state.centre);
+  const glm::dvec3 p = row ? row->rotation * middle + row->translation : middle;
   if (!(p.z > 1e-9)) return std::nullopt;
   const double x = p.x / p.z, y = p.y / p.z;
   const DistortedPoint at = m_camera.domain().distortedWithJacobian(x, y);
@@ -69,12 +79,13 @@ std::optional<Linearised> PoseProblem::lineariseAt(const PoseState& state, const
   const auto chained = [&](double focal, double byX, double byY) {
     return focal / p.z * glm::dvec3(byX, byY, -(byX * x + byY * y));
   };
-  const glm::dvec3 rows[2] = {chained(in.fx, at.dx.x, at.dy.x), chained(in.fy, at.dx.y, at.dy.y)};
+  glm::dvec3 rows[2] = {chained(in.fx, at.dx.x, at.dy.x), chained(in.fy, at.dx.y, at.dy.y)};
+  if (row) rows[0] = rows[0] * row->rotation, rows[1] = rows[1] * row->rotation;
   Linearised to;
   to.residualPx = {in.fx * at.position.x + in.cx, in.fy * at.position.y + in.cy};
   for (int i = 0; i < 2; ++i) {
-    // row · (-R), and row · (w × p) = w · (p × row).
-    const glm::dvec3 byCentre = -(rows[i] * rotation), byRotation = glm::cross(p, rows[i]);
+    // row · (-R), and row · (w × p) = w · (p × row), p at the middle row.
+    const glm::dvec3 byCentre = -(rows[i] * rotation), byRotation = glm::cross(middle, rows[i]);
     to.jacobian.row(i) << byCentre.x, byCentre.y, byCentre.z, byRotation.x, byRotation.y, byRotation.z;
   }
   return to;
@@ -82,14 +93,14 @@ std::optional<Linearised> PoseProblem::lineariseAt(const PoseState& state, const
 
 std::optional<Linearised> PoseProblem::linearise(const PoseState& state, int observation) const {
   const ResectionObservation& seen = m_observations[observation];
-  auto at = lineariseAt(state, seen.world);
+  auto at = lineariseAt(state, seen.world, m_rows.empty() ? nullptr : &m_rows[observation]);
   if (at) at->residualPx -= seen.pixel;
   return at;
 }
 
 double PoseProblem::sigmas(const PoseState& state, int observation) const {
   const ResectionObservation& seen = m_observations[observation];
-  const glm::dvec3 p = inCamera(state, seen.world);
+  const glm::dvec3 p = inCamera(state, observation);
   if (!(p.z > 1e-9)) return std::numeric_limits<double>::infinity();
   const glm::dvec2 r = m_camera.projectUnchecked(p) - seen.pixel;
   const double distance = std::sqrt(glm::dot(r, m_weights[observation] * r));

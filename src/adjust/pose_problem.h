@@ -22,7 +22,8 @@ struct Linearised {
 };
 
 /// One space resection: who was seen where, what is free, and its linear algebra. The derivatives are
-/// analytic: with p = R (X - C), dp/dC = -R and, for R' = exp(w) R, dp/dw = -[p]x.
+/// analytic: with p = R (X - C), dp/dC = -R and, for R' = exp(w) R, dp/dw = -[p]x. A row of a rolling shutter sees E p, where E,
+/// what the camera moved since the middle row, is known from where the observation was made: a constant.
 class PoseProblem {
  public:
   PoseProblem(const Camera& camera, const RigidTransform& start,
@@ -36,6 +37,8 @@ class PoseProblem {
   PoseState startState() const { return m_start; }
   RigidTransform pose(const PoseState& state) const;
   glm::dvec3 inCamera(const PoseState& state, const glm::dvec3& world) const;
+  /// An observed point in the axes of the camera at the row where it was seen.
+  glm::dvec3 inCamera(const PoseState& state, int observation) const;
 
   /// Columns of the 6-vector that may move, and their number.
   const std::vector<int>& freeColumns() const { return m_free; }
@@ -49,7 +52,7 @@ class PoseProblem {
 
   /// Nothing for a point behind the camera.
   std::optional<Linearised> linearise(const PoseState& state, int observation) const;
-  std::optional<Linearised> lineariseAt(const PoseState& state, const glm::dvec3& world) const;
+  std::optional<Linearised> lineariseAt(const PoseState& state, const glm::dvec3& world) const { return lineariseAt(state, world, nullptr); }
   /// Inverse covariance of each observation's pixel, the point's own standard deviation carried into the picture at
   /// this state; from the start state until called again.
   void weighAt(const PoseState& state);
@@ -80,6 +83,11 @@ class PoseProblem {
     Vector6 gradient = Vector6::Zero();
     double cost = 0;
   };
+  struct RowPose {
+    glm::dmat3 rotation{1};
+    glm::dvec3 translation{0};
+  };
+  std::optional<Linearised> lineariseAt(const PoseState& state, const glm::dvec3& world, const RowPose* row) const;
   Normals normals(const PoseState& state, const std::vector<int>& chosen, double huberSigmas, bool skipBehind) const;
 
   const Camera& m_camera;
@@ -88,6 +96,7 @@ class PoseProblem {
   PoseState m_start;
   std::vector<int> m_free;
   std::vector<glm::dmat2> m_weights;
+  std::vector<RowPose> m_rows;  ///< rowFromMiddle of each observation; empty: one pose for all
 };
 
 }  // namespace alidade

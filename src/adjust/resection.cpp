@@ -14,6 +14,7 @@
 #include "adjust/pose_problem.h"
 #include "adjust/pose_solver.h"
 #include "adjust/resection_checks.h"
+#include "adjust/robust.h"
 
 namespace alidade {
 
@@ -46,12 +47,6 @@ double standardised(const PoseProblem& problem, const PoseState& state, const Ma
   double sum = 0;
   for (int k = 0; k < 2; ++k) sum += r[k] * r[k] / std::max(axes.eigenvalues()[k], 0.01 * variance);
   return std::sqrt(sum);
-}
-
-/// Among n right picks the worst one lies beyond this in one set of a hundred thousand: sqrt(2 ln(n 10⁵)), as
-/// P(|r| > k sigma) = exp(-k²/2). Below it, dropping a pick costs more than it saves.
-double chanceLimit(std::size_t n) {
-  return std::sqrt(2 * std::log(1e5 * static_cast<double>(n)));
 }
 
 struct Adjusted {
@@ -194,12 +189,7 @@ void describe(ResectionSummary& summary, const PoseProblem& problem, const PoseS
 }  // namespace
 
 Result<void> ResectionOptions::validate() const {
-  if (!std::isfinite(huberSigmas) || huberSigmas < 0)
-    return fail("The robust loss's width must be zero or positive", "huberSigmas", "Give 2.5, or 0 for none");
-  if (!std::isfinite(outlierSigmas) || !(outlierSigmas > 0))
-    return fail("The limit for outliers must be positive", "outlierSigmas", "Give 3.5");
-  if (maximumIterations < 1 || maximumIterations > 100000)
-    return fail("The number of iterations must lie between 1 and 100000", "maximumIterations", "Give 100");
+  if (const auto valid = checkRobustOptions(huberSigmas, outlierSigmas, maximumIterations); !valid) return valid;
   for (const glm::dvec3& p : at)
     if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
       return fail("A point for the expected error is not finite", "at", "Give its coordinates in metres");

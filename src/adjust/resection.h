@@ -12,6 +12,7 @@
 #include "adjust/pose_accuracy.h"
 #include "base/error.h"
 #include "camera/camera.h"
+#include "camera/rolling_shutter.h"
 #include "geometry/rigid_transform.h"
 
 namespace alidade {
@@ -33,6 +34,7 @@ struct ResectionOptions {
   /// chance gives the worst of so many right picks in one set of a hundred thousand (20 picks: 5.4).
   double outlierSigmas = 3.5;
   int maximumIterations = 100;
+  RollingShutter shutter = {};  ///< each point is held to the pose of the row that it was seen in; the pose is the middle row's
   std::vector<glm::dvec3> at; ///< object points where the expected error is wanted, world
 
   Result<void> validate() const;

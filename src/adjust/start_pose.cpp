@@ -79,14 +79,18 @@ std::vector<RigidTransform> posesFromThreePoints(const std::array<glm::dvec3, 3>
   return poses;
 }
 
-Result<RigidTransform> findStartPose(const Camera& camera, const std::vector<ResectionObservation>& observations) {
+Result<RigidTransform> findStartPose(const Camera& camera, const std::vector<ResectionObservation>& observations,
+                                     const RollingShutter& shutter) {
   std::vector<glm::dvec3> rays, world;
+  std::vector<RigidTransform> rowFromMiddle;
   std::vector<int> index;
   glm::dvec3 origin(0);
   for (const auto& o : observations) origin += o.world / static_cast<double>(observations.size());
   for (std::size_t i = 0; i < observations.size(); ++i)
     if (const auto ray = camera.unproject(observations[i].pixel)) {
-      rays.push_back(glm::normalize(*ray));
+      rowFromMiddle.push_back(shutter.poseAtRow(RigidTransform::identity(), observations[i].pixel.y, camera.height()));
+      // As if the camera had only turned: what it moved by is little beside how far the points are, and the scores know it.
+      rays.push_back(glm::conjugate(rowFromMiddle.back().rotation) * glm::normalize(*ray));
       world.push_back(observations[i].world - origin);
       index.push_back(static_cast<int>(i));
     }
@@ -98,7 +102,7 @@ Result<RigidTransform> findStartPose(const Camera& camera, const std::vector<Res
   const auto scoreOf = [&](const RigidTransform& pose, double best) {
     double score = 0;
     for (std::size_t k = 0; k < n && score < best; ++k) {
-      const glm::dvec3 p = pose * world[k];
+      const glm::dvec3 p = rowFromMiddle[k] * (pose * world[k]);
       const ResectionObservation& o = observations[index[k]];
       const double limit = 10 * o.sigmaPx + 3;
       double s = 1;
@@ -125,7 +129,9 @@ Result<RigidTransform> findStartPose(const Camera& camera, const std::vector<Res
   if (!(lowest <= static_cast<double>(n)))
     return fail("the known points lie on one line or in one spot", {}, "Observe points beside the line, or give an approximate pose");
   best.translation -= best.rotation * origin;
-  const auto refined = resect(camera, best, observations);
+  ResectionOptions options;
+  options.shutter = shutter;
+  const auto refined = resect(camera, best, observations, options);
   if (!refined) return fail(refined.error());
   if (!refined->converged) return fail("no pose agrees with the known points (" + refined->reason + ")", {},
                                        "Check the picks and the points' numbers, or give an approximate pose");

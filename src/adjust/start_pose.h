@@ -18,6 +18,7 @@ std::vector<RigidTransform> posesFromThreePoints(const std::array<glm::dvec3, 3>
 /// An approximate pose from nothing but observations, however many of them are wrong as long as half are right:
 /// three at a time (fixed seed) give poses, the one that most others agree with is refined on them. Error, with the
 /// reason, where fewer than four observations, or fewer than two fifths of them, agree with any pose.
-Result<RigidTransform> findStartPose(const Camera& camera, const std::vector<ResectionObservation>& observations);
+Result<RigidTransform> findStartPose(const Camera& camera, const std::vector<ResectionObservation>& observations,
+                                     const RollingShutter& shutter = {});
 
 }  // namespace alidade

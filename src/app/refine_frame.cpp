@@ -4,6 +4,7 @@
 #include "adjust/start_pose.h"
 #include "app/jobs.h"
 #include "app/observation_rows.h"
+#include "app/pose_clock.h"
 #include "plugin_api/picture_header.h"
 
 namespace alidade {
@@ -33,14 +34,16 @@ Result<ResectionSummary> refineFrame(Project& project, FrameId frameId,
                     " pixels, its calibration is for " + std::to_string(camera->camera.width()) + "×" +
                     std::to_string(camera->camera.height()),
                 frame->image.path, "Use the calibration of this picture size");
+  ResectionOptions asRead = options;
+  asRead.shutter = shutterOf(project, *frame);
   std::optional<RigidTransform> start = frame->cameraFromWorld;
   if (!start) {
-    const auto found = findStartPose(camera->camera, observations);
+    const auto found = findStartPose(camera->camera, observations, asRead.shutter);
     if (!found)
       return fail("Frame '" + frame->name + "' has no pose to start from: " + found.error().what, project.path, found.error().advice);
     start = *found;
   }
-  auto summary = resect(camera->camera, *start, observations, options);
+  auto summary = resect(camera->camera, *start, observations, asRead);
   if (!summary || !summary->converged || dryRun) return summary;
 
   if (!frame->originalCameraFromWorld) frame->originalCameraFromWorld = frame->cameraFromWorld;

@@ -145,6 +145,17 @@ TEST(Calibration, FindsEveryLensAgainFromPerfectCorners) {
   }
 }
 
+/// More coefficients than a lens can fill: what the pictures do not tell apart is held, and it is said.
+TEST(Calibration, TheHighOrderBrownFormDrawsWhatThePicturesShow) {
+  const Intrinsics truth = lenses()[5];
+  CalibrationOptions options;
+  options.model = CameraModel::BrownHighOrder, options.parts = 0;
+  const CalibrationSummary found = calibrated(goodShots(truth, 0.1, 3), options);
+  ASSERT_TRUE(found.converged) << found.reason;
+  EXPECT_NEAR(found.sigmaPx, 0.1, 0.01);
+  EXPECT_LT(largestDifference(truth, found.intrinsics), 0.5);
+}
+
 TEST(Calibration, AFisheyeOf160DegreesIsFoundFromNothing) {
   const Intrinsics truth = lensOf(CameraModel::OpenCvFisheye, {480, 480, 800, 600, -0.01, 0.003, -0.001, 0.0001});
   CalibrationOptions options;

@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "adjust/network_checks.h"
 #include "ceres_cost.h"
 #include "network_sites.h"
 
@@ -66,6 +67,60 @@ TEST(Network, PicksOfARollingShutterGiveTheMiddleRowsPose) {
   };
   EXPECT_LT(worstOf(shutter), 1e-6);
   EXPECT_GT(worstOf({}), 0.005);
+}
+
+/// The depth of a picked point is that of its row's camera; of another point that of the middle row's.
+TEST(Network, DepthsOfARollingShutterFollowTheirPicksRows) {
+  NetworkSite site = arcSite({.noisePx = 0});
+  Network& n = site.network;
+  const Camera camera(n.cameras[0].intrinsics);
+  const RollingShutter shutter{0.03, {{0.3, -0.5, 0.4}, {1, -2, 4}}};
+  for (NetworkFrame& frame : n.frames) frame.shutter = shutter;
+  for (PictureObservation& seen : n.observations) {
+    const glm::dvec3 inCamera = site.poses[seen.frame] * site.points[seen.point];
+    glm::dvec3 atRow = inCamera;
+    for (int i = 0; i < 30; ++i) {
+      seen.pixel = camera.projectUnchecked(atRow);
+      atRow = exponential(shutter.motion * shutter.secsAtRow(seen.pixel.y, camera.height())) * inCamera;
+    }
+    if (seen.frame < 2) n.depths.push_back({seen.frame, seen.point, atRow.z, 0.01});
+  }
+  const NetworkSummary summary = adjusted(n);
+  ASSERT_TRUE(summary.converged) << summary.reason;
+  EXPECT_LT(worstPose(site, summary).first, 1e-6);
+  const auto group = std::find_if(summary.groups.begin(), summary.groups.end(), [](const ResidualGroup& g) { return g.kind == ResidualKind::Depth; });
+  ASSERT_NE(group, summary.groups.end());
+  EXPECT_LT(group->rmsM, 1e-6);
+  for (NetworkFrame& frame : n.frames) frame.shutter.motion.translation.z = 0;
+  const NetworkSummary standing = adjusted(n);
+  EXPECT_GT(worstPose(site, standing).first, 1e-3);
+}
+
+/// A step that is damped enough promises next to nothing anywhere: only where the undamped one does, too, is it a minimum.
+TEST(Network, ConvergedMeansThatTheUndampedStepIsNothing) {
+  int converged = 0;
+  for (unsigned seed = 1; seed <= 40; ++seed) {
+    const double far = 0.05 + 0.015 * seed;
+    NetworkSite site = arcSite({.ties = 20, .startShiftM = 8 * far, .startTurnRad = far, .seed = seed});
+    site.network.cameras[0].freeFocal = site.network.cameras[0].freeDistortion = true;
+    const NetworkLayout layout(site.network);
+    const NetworkTerms terms(site.network, layout);
+    std::vector<std::string> warnings;
+    const auto start = startState(site.network, layout, warnings);
+    if (!start || !warnings.empty()) continue;
+    NormalSystem normals(terms);
+    std::vector<char> active(terms.terms().size(), 1);
+    const std::vector<double> sigmas = termSigmas(terms, *start);
+    for (std::size_t t = 0; t < active.size(); ++t) active[t] = std::isfinite(sigmas[t]);
+    normals.use(active);
+    const NetworkFit fit = fitNetwork(terms, normals, active, *start, 0, 400, {});
+    if (!fit.converged) continue;
+    ++converged;
+    ASSERT_TRUE(normals.linearise(fit.state, 0));
+    if (!normals.solve(1e-10)) continue;
+    EXPECT_LT(normals.promisedDecrease(), 1e-8 * fit.cost + 1e-4) << seed;
+  }
+  EXPECT_GT(converged, 10);
 }
 
 TEST(Network, IsTheSameTenThousandKilometresAway) {

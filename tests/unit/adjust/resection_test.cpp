@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "adjust/pose_problem.h"
+#include "adjust/start_pose.h"
 #include "ceres_cost.h"
 #include "sites.h"
 
@@ -25,6 +26,39 @@ TEST(Resection, FindsTheExactPoseFromExactPicks) {
   for (const double e : poseError(summary->cameraFromWorld, site.truth)) EXPECT_NEAR(e, 0, 1e-9);
   EXPECT_LT(summary->rmsPx, 1e-7);
   EXPECT_EQ(summary->outlierCount(), 0);
+}
+
+/// Exact picks of a camera that turns and walks while its rows are read; half of them wrong, and no start pose, in the end.
+TEST(Resection, PicksOfARollingShutterGiveTheMiddleRowsPose) {
+  const RollingShutter shutter{0.03, {{0.3, -0.5, 0.4}, {1, -2, 0.5}}};
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    Site site = randomSite(seed, 30, 0);
+    for (ResectionObservation& pick : site.picks) {
+      const auto seen = project(site.camera, shutter, site.truth * pick.world);
+      ASSERT_TRUE(seen);
+      pick.pixel = *seen;
+      for (int i = 0; i < 30; ++i)
+        pick.pixel = site.camera.projectUnchecked(
+            exponential(shutter.motion * shutter.secsAtRow(pick.pixel.y, site.camera.height())) * (site.truth * pick.world));
+    }
+    ResectionOptions options;
+    const auto still = resect(site.camera, site.start, site.picks, options);
+    ASSERT_TRUE(still);
+    EXPECT_GT(glm::length(still->cameraFromWorld.centre() - site.truth.centre()), 0.005);
+    options.shutter = shutter;
+    const auto found = resect(site.camera, site.start, site.picks, options);
+    ASSERT_TRUE(found && found->converged) << found->reason;
+    EXPECT_LT(glm::length(found->cameraFromWorld.centre() - site.truth.centre()), 1e-6);
+    EXPECT_LT(rotationAngleBetween(found->cameraFromWorld, site.truth), 1e-8);
+    const auto fromNothing = findStartPose(site.camera, site.picks, shutter);
+    ASSERT_TRUE(fromNothing) << fromNothing.error().text();
+    EXPECT_LT(glm::length(fromNothing->centre() - site.truth.centre()), 1e-6);
+    for (std::size_t i = 0; i < 12; ++i) site.picks[i].pixel += glm::dvec2(40 + 9 * i, -30 - 7.0 * i * i);
+    const auto robust = findStartPose(site.camera, site.picks, shutter);
+    ASSERT_TRUE(robust) << robust.error().text();
+    // The rows of the wrong picks are wrong as well, but they take no part.
+    EXPECT_LT(glm::length(robust->centre() - site.truth.centre()), 1e-5);
+  }
 }
 
 TEST(Resection, IsTheSameAtTheOriginAndTenThousandKilometresAway) {

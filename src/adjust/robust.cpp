@@ -1,0 +1,25 @@
+// SPDX-FileCopyrightText: 2026 the Alidade authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "adjust/robust.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace alidade {
+
+double chanceLimit(std::size_t n) {
+  return std::sqrt(2 * std::log(1e5 * static_cast<double>(std::max<std::size_t>(n, 1))));
+}
+
+Result<void> checkRobustOptions(double huberSigmas, double outlierSigmas, int maximumIterations) {
+  if (!std::isfinite(huberSigmas) || huberSigmas < 0)
+    return fail("The robust loss's width must be zero or positive", "huberSigmas", "Give 2.5, or 0 for none");
+  if (!std::isfinite(outlierSigmas) || !(outlierSigmas > 0))
+    return fail("The limit for outliers must be positive", "outlierSigmas", "Give 3.5");
+  if (maximumIterations < 1 || maximumIterations > 100000)
+    return fail("The number of iterations must lie between 1 and 100000", "maximumIterations", "Give 100");
+  return {};
+}
+
+}  // namespace alidade
