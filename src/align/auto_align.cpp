@@ -13,6 +13,7 @@
 #include "align/evidence.h"
 #include "align/fine_fit.h"
 #include "align/level_fit.h"
+#include "align/row_photo.h"
 
 namespace alidade {
 
@@ -124,6 +125,8 @@ class Aligner {
                   {}, "Use the calibration of this picture size");
     if (m_scene.empty()) return fail("There is no scan and no design to align the picture with", {}, "Add a scan of what the picture shows, and make it visible");
     m_levels = picturePyramid(m_photo, m_camera, kWidestPx, kCoarsestPx);
+    // The rows' poses are shares of the picture's height apart: the same at every size.
+    for (PictureLevel& level : m_levels) level.shutter = m_options.shutter;
     const double mean = meanOf(m_levels.front().luma), deviation = deviationOf(m_levels.front().luma, mean);
     if (mean < kDarkest) return fail(fmt::format("The picture is too dark to align: mean brightness {:.0f} of 255", mean), {}, "Take a brighter picture, or pick points by hand");
     if (deviation < kLeastContrast) return fail("The picture shows no edges: its brightness hardly varies", {}, "Take a picture of something with structure, or pick points by hand");
@@ -231,7 +234,7 @@ class Aligner {
       const RigidTransform pose = shifted(m_start, centre);
       const ScanView view = drawScanView(m_scene, level.camera, pose);
       const std::vector<Anchor> anchors = anchorsOf(view, level.camera, pose, 7, 10);
-      for (PoseCandidate& found : searchPoses(anchors, level.luma, level.camera, m_start, m_options.range,
+      for (PoseCandidate& found : searchPoses(anchors, MiddleRowPhoto(level, view).luma(), level.camera, m_start, m_options.range,
                                               kSamples / static_cast<int>(centres.size() > 1 ? 2 : 1), 4, kApartPx))
         all.push_back(found);
     }

@@ -12,6 +12,7 @@
 #include "align/scan_view.h"
 #include "base/error.h"
 #include "base/progress.h"
+#include "camera/rolling_shutter.h"
 
 namespace alidade {
 
@@ -19,6 +20,7 @@ struct AlignmentOptions {
   SearchRange range;
   std::array<bool, 3> lockPosition{false, false, false};  ///< E, N, H of the camera's centre
   bool lockAttitude = false;
+  RollingShutter shutter = {};  ///< the rows' poses keep their places beside the frame's, that of the middle row, which is sought
   bool startIsNear = false;  ///< within some 5 pixels of a picture 480 wide: the range is not searched
   double acceptedPx = 1.0;  ///< of the raw picture, or of 1920 across where it is wider: what converged means
 

@@ -12,6 +12,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "align/pose_search.h"
+#include "align/row_photo.h"
 #include "base/parallel.h"
 
 namespace alidade {
@@ -40,13 +41,8 @@ constexpr double kApartPx = 4;
 struct EdgeSite {
   glm::dvec2 pixel, across;
   glm::dvec3 world;
+  glm::dvec2 offset{0};  ///< of a rolling shutter's photo, MiddleRowPhoto::offsetOf()
 };
-
-float sampled(const Image<float>& image, const glm::dvec2& at) {
-  const int x = std::clamp(static_cast<int>(at.x), 0, image.width() - 2), y = std::clamp(static_cast<int>(at.y), 0, image.height() - 2);
-  const auto a = static_cast<float>(at.x - x), b = static_cast<float>(at.y - y);
-  return (1 - b) * ((1 - a) * image.at(x, y) + a * image.at(x + 1, y)) + b * ((1 - a) * image.at(x, y + 1) + a * image.at(x + 1, y + 1));
-}
 
 /// Of three samples a step apart, the middle one the largest: where between -1/2 and 1/2 the parabola through them peaks.
 double peakOf(float before, float here, float after) {
@@ -121,35 +117,35 @@ std::optional<double> edgeAlong(const Image<float>& photo, const glm::dvec2& fro
   return best;
 }
 
-int blockOf(const glm::dvec2& at, const Image<float>& photo) {
-  return static_cast<int>(at.y * kBlockRows / photo.height()) * kBlockColumns + static_cast<int>(at.x * kBlockColumns / photo.width());
+/// Where the photo should show a site, if it does.
+std::optional<glm::dvec2> placeOf(const EdgeSite& site, const PictureLevel& level, const glm::dvec3& pInCamera) {
+  const auto pixel = pInCamera.z > 0 ? level.camera.project(pInCamera) : std::nullopt;
+  if (!pixel || !within(level.luma, *pixel + site.offset)) return std::nullopt;
+  return *pixel + site.offset;
 }
 
 /// Looks for the sites around where the pose puts them.
-void find(const std::vector<EdgeSite>& sites, const PictureLevel& level, const RigidTransform& pose, double reachPx, FineFit& fit) {
+void find(const std::vector<EdgeSite>& sites, const PictureLevel& level, const MiddleRowPhoto& photo, const RigidTransform& pose,
+          double reachPx, FineFit& fit) {
   fit.places.clear(), fit.anchorOf.clear(), fit.correlation.clear();
   for (std::size_t i = 0; i < sites.size(); ++i) {
     const EdgeSite& site = sites[i];
     const glm::dvec3 p = pose * site.world;
-    const auto pixel = p.z > 0 ? level.camera.project(p) : std::nullopt;
-    if (!pixel || !within(level.luma, *pixel)) continue;
-    const auto along = edgeAlong(level.luma, *pixel, site.across, reachPx);
+    const auto pixel = placeOf(site, level, p);
+    const auto along = pixel ? edgeAlong(photo.luma(), *pixel, site.across, reachPx) : std::nullopt;
     if (!along) continue;
     const glm::dvec2 seen = *pixel + *along * site.across;
     fit.anchorOf.push_back(static_cast<int>(i));
-    fit.correlation.push_back(sampled(level.luma, seen) / 255);
-    fit.places.push_back({site.world, seen, glm::outerProduct(site.across, site.across) / (kNoisePx * kNoisePx), blockOf(site.pixel, level.luma)});
+    fit.correlation.push_back(sampled(photo.luma(), seen) / 255);
+    fit.places.push_back({site.world, photo.middlePixel(seen, p), glm::outerProduct(site.across, site.across) / (kNoisePx * kNoisePx), blockOf(site.pixel, level.luma)});
   }
 }
 
 /// Mean strength of the photo's edges where the pose puts the sites, 0..255.
-double scoreOf(const std::vector<EdgeSite>& sites, const PictureLevel& level, const RigidTransform& pose) {
+double scoreOf(const std::vector<EdgeSite>& sites, const PictureLevel& level, const MiddleRowPhoto& photo, const RigidTransform& pose) {
   double sum = 0;
-  for (const EdgeSite& site : sites) {
-    const glm::dvec3 p = pose * site.world;
-    const auto pixel = p.z > 0 ? level.camera.project(p) : std::nullopt;
-    if (pixel && within(level.luma, *pixel)) sum += sampled(level.luma, *pixel);
-  }
+  for (const EdgeSite& site : sites)
+    if (const auto pixel = placeOf(site, level, pose * site.world)) sum += sampled(photo.luma(), *pixel);
   return sites.empty() ? 0 : sum / static_cast<double>(sites.size());
 }
 
@@ -166,15 +162,15 @@ bool isWithin(const RigidTransform& pose, const PoseKnowledge& known) {
 }
 
 /// Many poses around one, not beyond the range, by how the photo's edges agree with the sites there. Fixed seed.
-Others tryOthers(const std::vector<EdgeSite>& sites, const PictureLevel& level, const RigidTransform& pose, double deviationPx,
-                 const PoseKnowledge& known) {
+Others tryOthers(const std::vector<EdgeSite>& sites, const PictureLevel& level, const MiddleRowPhoto& photo, const RigidTransform& pose,
+                 double deviationPx, const PoseKnowledge& known) {
   std::vector<glm::dvec3> world;
   std::vector<double> depths;
   for (std::size_t i = 0; i < sites.size(); i += std::max<std::size_t>(1, sites.size() / 200)) {
     world.push_back(sites[i].world);
     depths.push_back((pose * sites[i].world).z);
   }
-  Others found{pose, scoreOf(sites, level, pose), 0};
+  Others found{pose, scoreOf(sites, level, photo, pose), 0};
   if (depths.empty()) return found;
   std::nth_element(depths.begin(), depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2), depths.end());
   const double radians = deviationPx / level.camera.intrinsics().fx, metres = radians * depths[depths.size() / 2];
@@ -190,7 +186,7 @@ Others tryOthers(const std::vector<EdgeSite>& sites, const PictureLevel& level, 
   }
   std::vector<double> scores(poses.size());
   parallelFor(poses.size(), 16, [&](std::size_t first, std::size_t last, int) {
-    for (std::size_t i = first; i < last; ++i) scores[i] = scoreOf(sites, level, poses[i]);
+    for (std::size_t i = first; i < last; ++i) scores[i] = scoreOf(sites, level, photo, poses[i]);
   });
   found.chance = std::accumulate(scores.begin(), scores.end(), 0.0) / static_cast<double>(scores.size());
   for (std::size_t i = 0; i < poses.size(); ++i)
@@ -205,12 +201,14 @@ Others tryOthers(const std::vector<EdgeSite>& sites, const PictureLevel& level, 
 FineFit fitEdges(const AlignmentScene& scene, const PictureLevel& level, const RigidTransform& cameraFromWorld,
                  const PoseKnowledge& known) {
   FineFit fit;
-  fit.photo = level.luma;
   RigidTransform pose = cameraFromWorld;
   for (int draw = 0; draw < kDraws; ++draw) {
     fit.drawnAt = pose;
     fit.view = drawScanView(scene, level.camera, pose);
-    const std::vector<EdgeSite> sites = sitesOf(fit.view, level.camera, pose);
+    std::vector<EdgeSite> sites = sitesOf(fit.view, level.camera, pose);
+    const MiddleRowPhoto photo(level, fit.view);
+    for (EdgeSite& site : sites) site.offset = photo.offsetOf(pose * site.world);
+    fit.photo = photo.luma();
     std::vector<glm::dvec3> world;
     fit.anchors.clear();
     for (const EdgeSite& site : sites) {
@@ -220,16 +218,16 @@ FineFit fitEdges(const AlignmentScene& scene, const PictureLevel& level, const R
       fit.anchors.push_back(std::move(anchor));
       world.push_back(site.world);
     }
-    const Others others = tryOthers(sites, level, pose, kOthersPx[draw], known);
+    const Others others = tryOthers(sites, level, photo, pose, kOthersPx[draw], known);
     pose = others.best;
     for (const double reachPx : kReachPx) {
       if (draw > 0 && reachPx > kReachPx[2]) continue;
-      find(sites, level, pose, reachPx, fit);
+      find(sites, level, photo, pose, reachPx, fit);
       fit.estimate = estimatePose(level.camera, pose, fit.places, known);
       if (!fit.estimate) return fit;
       pose = fit.estimate->cameraFromWorld;
     }
-    fit.score = scoreOf(sites, level, pose) - others.chance;
+    fit.score = scoreOf(sites, level, photo, pose) - others.chance;
     fit.asideScore = (others.asideScore - others.chance) / std::max(1e-9, fit.score);
     fit.movedPx = distancePx(world, level.camera, fit.drawnAt, pose);
   }

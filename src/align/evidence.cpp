@@ -10,6 +10,8 @@
 
 #include <fmt/format.h>
 
+#include "align/row_photo.h"
+
 namespace alidade {
 
 namespace {
@@ -46,7 +48,7 @@ bool counts(const FineFit& fit, std::size_t place) {
 double spreadOf(const FineFit& fit, const Image<float>& photo) {
   std::array<int, kBlockColumns * kBlockRows> offered{}, held{};
   for (const Anchor& anchor : fit.anchors)
-    ++offered[anchor.patch.at.y * kBlockRows / photo.height() * kBlockColumns + anchor.patch.at.x * kBlockColumns / photo.width()];
+    ++offered[static_cast<std::size_t>(blockOf(glm::dvec2(anchor.patch.at), photo))];
   for (std::size_t i = 0; i < fit.places.size(); ++i)
     if (counts(fit, i)) ++held[fit.places[i].block];
   int cells = 0, full = 0;
@@ -171,6 +173,8 @@ void judge(const FineFit& fit, const PictureLevel& level, const AlignmentOptions
   for (std::size_t i = 0; i < fit.places.size(); ++i) {
     if (!counts(fit, i)) continue;
     SeenPlace seen = fit.places[i];
+    if (level.shutter.isOn())
+      seen.pixel = photoPixel(level.camera, level.shutter, seen.pixel, (pose * seen.world).z).value_or(seen.pixel);
     seen.pixel = level.scale * (seen.pixel + 0.5) - 0.5;
     seen.information /= level.scale * level.scale;
     summary.places.push_back(seen);

@@ -40,6 +40,9 @@ struct FineFitOptions {
 /// Blocks of the picture that share what is wrong with them: a grid of kBlockColumns by kBlockRows.
 constexpr int kBlockColumns = 6, kBlockRows = 4;
 
+/// The block of a pixel.
+int blockOf(const glm::dvec2& at, const Image<float>& photo);
+
 FineFit fineFit(const AlignmentScene& scene, const PictureLevel& level, const RigidTransform& cameraFromWorld,
                 const FineFitOptions& options);
 

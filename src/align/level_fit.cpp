@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "align/pose_search.h"
+#include "align/row_photo.h"
 #include "base/parallel.h"
 
 namespace alidade {
@@ -22,10 +23,12 @@ LevelFit fitLevel(const AlignmentScene& scene, const PictureLevel& level, const 
   LevelFit fit;
   fit.view = drawScanView(scene, level.camera, cameraFromWorld);
   fit.anchors = anchorsOf(fit.view, level.camera, cameraFromWorld, options.half, options.cellPx);
+  const MiddleRowPhoto photo(level, fit.view);
   std::vector<std::optional<PatchPlace>> places(fit.anchors.size());
   parallelFor(places.size(), 4, [&](std::size_t first, std::size_t last, int) {
     for (std::size_t i = first; i < last; ++i)
-      places[i] = findPatch(fit.anchors[i].patch, level.luma, options.radiusPx, options.leastCorrelation);
+      places[i] = findPatch(fit.anchors[i].patch, photo.luma(), options.radiusPx, options.leastCorrelation,
+                            glm::ivec2(glm::round(photo.offsetOf(cameraFromWorld * fit.anchors[i].world))));
   });
   std::vector<glm::dvec3> world;
   for (std::size_t i = 0; i < places.size(); ++i) {
@@ -34,7 +37,7 @@ LevelFit fitLevel(const AlignmentScene& scene, const PictureLevel& level, const 
     fit.anchorOf.push_back(static_cast<int>(i));
     fit.correlation.push_back(places[i]->correlation);
     ResectionObservation seen;
-    seen.pixel = places[i]->pixel;
+    seen.pixel = photo.middlePixel(places[i]->pixel, cameraFromWorld * fit.anchors[i].world);
     seen.world = fit.anchors[i].world;
     seen.sigmaPx = std::hypot(places[i]->sigmaPx, options.noisePx);
     fit.observations.push_back(std::move(seen));

@@ -186,8 +186,9 @@ std::optional<PatchPlace> findPatch(const Patch& patch, const Image<float>& phot
   return place;
 }
 
-std::optional<PatchPlace> followPatch(const Patch& patch, const Image<float>& photo, int radius, double least) {
-  const Image<float> scores = correlate(patch, photo, radius);
+std::optional<PatchPlace> followPatch(const Patch& patch, const Image<float>& photo, int radius, double least,
+                                      const glm::ivec2& around) {
+  const Image<float> scores = correlate(patch, photo, radius, around);
   float top = -1;
   glm::ivec2 best(0);
   for (int y = -radius; y <= radius; ++y)
@@ -196,7 +197,7 @@ std::optional<PatchPlace> followPatch(const Patch& patch, const Image<float>& ph
       if (score > top) top = score, best = {x, y};
     }
   if (!(scores.at(best.x + radius, best.y + radius) >= least)) return std::nullopt;
-  auto place = refine(patch, photo, best, kHold);
+  auto place = refine(patch, photo, around + best, kHold);
   if (!place || place->correlation < least) return std::nullopt;
   return place;
 }

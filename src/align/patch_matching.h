@@ -47,6 +47,7 @@ std::optional<PatchPlace> findPatch(const Patch& patch, const Image<float>& phot
 
 /// The same for a pose that is nearly right: the nearer of two equal places is taken, so that a patch on a straight edge
 /// counts across it.
-std::optional<PatchPlace> followPatch(const Patch& patch, const Image<float>& photo, int radius, double least);
+std::optional<PatchPlace> followPatch(const Patch& patch, const Image<float>& photo, int radius, double least,
+                                      const glm::ivec2& around = {0, 0});
 
 }  // namespace alidade

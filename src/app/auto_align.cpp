@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <set>
 
+#include "app/pose_clock.h"
+
 namespace alidade {
 
 namespace {
@@ -54,7 +56,9 @@ Result<AlignmentSummary> autoAlignFrame(Project& project, const AlignmentScene& 
                 "Give it one to 3° and 0.3 m: poses from a file, or a resection from picked points");
   const auto picture = pictures.picture(project, *frame);
   if (!picture) return fail(picture.error());
-  auto summary = alignPicture(scene, **picture, camera->camera, *frame->cameraFromWorld, options, progress);
+  AlignmentOptions asRead = options;
+  asRead.shutter = shutterOf(project, *frame);
+  auto summary = alignPicture(scene, **picture, camera->camera, *frame->cameraFromWorld, asRead, progress);
   if (!summary) return fail(summary.error().in("frame '" + frame->name + "'"));
   if (!summary->converged || dryRun) return summary;
 

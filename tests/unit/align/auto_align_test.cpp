@@ -48,6 +48,32 @@ TEST_F(AutoAlign, FindsThePoseFromThreeDegreesAndThirtyCentimetresOff) {
   }
 }
 
+/// A camera that turns and walks at a metre a second while it reads its rows, with a wall a metre and others six away: up to
+/// 10 px between the first and the last row, and more between near and far.
+TEST_F(AutoAlign, TheRowsOfARollingShutterKeepTheirPlaces) {
+  const RollingShutter shutter{0.03, {{0.2, -0.35, 0.15}, {-0.7, 0.2, -0.6}}};
+  const ColourImage photo = Room::photo(Room::camera(), Room::pose(), shutter);
+  std::mt19937 random(11);
+  const RigidTransform start = test::disturbed(Room::pose(), random);
+  AlignmentOptions options;
+  const auto still = alignPicture(*s_scene, photo, Room::camera(), start, options);
+  ASSERT_TRUE(still) << still.error().text();
+  options.shutter = shutter;
+  const auto moving = alignPicture(*s_scene, photo, Room::camera(), start, options);
+  ASSERT_TRUE(moving) << moving.error().text();
+  ASSERT_TRUE(moving->converged) << moving->report();
+  EXPECT_LT(errorPx(moving->cameraFromWorld), 0.3) << moving->report();
+  EXPECT_LT(moving->estimate.rmsPx, 0.5 * still->estimate.rmsPx) << still->report();
+  // The places are those of the photo itself.
+  double squares = 0;
+  for (const SeenPlace& place : moving->places) {
+    const auto pixel = project(Room::camera(), shutter, moving->cameraFromWorld * place.world);
+    ASSERT_TRUE(pixel);
+    squares += std::pow(std::min(2.0, glm::distance(*pixel, place.pixel)), 2);
+  }
+  EXPECT_LT(std::sqrt(squares / static_cast<double>(moving->places.size())), 0.6);
+}
+
 TEST_F(AutoAlign, ALockedPositionStays) {
   RigidTransform turned = Room::pose();
   turned.rotation = glm::angleAxis(0.03, glm::normalize(glm::dvec3(0.4, 1, 0.2))) * turned.rotation;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "align/scan_view.h"
+#include "camera/rolling_shutter.h"
 #include "survey/design_model.h"
 
 namespace alidade::test {
@@ -98,13 +99,14 @@ class Boxes {
   }
   static RigidTransform pose() { return RigidTransform::cameraLookingAt(world({-1.2, -4.4, 2.4}), world({0.4, 4.5, 0.6})); }
 
-  static ColourImage photo(const Camera& camera, const RigidTransform& cameraFromWorld) {
+  static ColourImage photo(const Camera& camera, const RigidTransform& cameraFromWorld, const RollingShutter& shutter = {}) {
     std::mt19937 random(5);
     std::normal_distribution<double> noise(0, 2);
     ColourImage image(camera.width(), camera.height());
-    const glm::dmat3 toWorld = glm::transpose(cameraFromWorld.rotationMatrix());
-    const glm::dvec3 from = cameraFromWorld.centre() - world({0, 0, 0});
-    for (int y = 0; y < image.height(); ++y)
+    for (int y = 0; y < image.height(); ++y) {
+      const RigidTransform pose = shutter.poseAtRow(cameraFromWorld, y, image.height());
+      const glm::dmat3 toWorld = glm::transpose(pose.rotationMatrix());
+      const glm::dvec3 from = pose.centre() - world({0, 0, 0});
       for (int x = 0; x < image.width(); ++x) {
         double light = 0;
         for (const glm::dvec2 part : {glm::dvec2(-0.25, -0.25), {0.25, -0.25}, {-0.25, 0.25}, {0.25, 0.25}}) {
@@ -115,6 +117,7 @@ class Boxes {
         const auto shade = static_cast<std::uint8_t>(std::clamp(light + noise(random), 0.0, 255.0));
         image.at(x, y) = {shade, shade, shade, 255};
       }
+    }
     return image;
   }
 };

@@ -56,6 +56,18 @@ TEST(EdgeAlign, FindsThePoseFromTheDesignAlone) {
   findsThePose(designed(), 0.3);
 }
 
+TEST(EdgeAlign, TheRowsOfARollingShutterKeepTheirPlaces) {
+  const RollingShutter shutter{0.03, {{0.2, -0.35, 0.15}, {-0.7, 0.2, -0.6}}};
+  const ColourImage photo = Boxes::photo(Boxes::camera(), Boxes::pose(), shutter);
+  std::mt19937 random(11);
+  AlignmentOptions options;
+  options.shutter = shutter;
+  const auto summary = alignPicture(designed(), photo, Boxes::camera(), test::disturbed(Boxes::pose(), random), options);
+  ASSERT_TRUE(summary) << summary.error().text();
+  EXPECT_TRUE(summary->converged) << summary->report();
+  EXPECT_LT(errorPx(summary->cameraFromWorld), 0.4) << summary->report();
+}
+
 TEST(EdgeAlign, FindsThePoseFromAScanWithoutColours) {
   const AlignmentScene scene = scanned();
   ASSERT_FALSE(scene.hasColour());

@@ -9,6 +9,7 @@
 #include <random>
 
 #include "align/scan_view.h"
+#include "camera/rolling_shutter.h"
 
 namespace alidade::test {
 
@@ -76,13 +77,14 @@ class Room {
   static RigidTransform pose() { return RigidTransform::cameraLookingAt(world({-2.2, -0.4, 1.7}), world({1.6, 4.5, 1.2})); }
 
   /// Another exposure than the scan's colours, and noise.
-  static ColourImage photo(const Camera& camera, const RigidTransform& cameraFromWorld) {
+  static ColourImage photo(const Camera& camera, const RigidTransform& cameraFromWorld, const RollingShutter& shutter = {}) {
     std::mt19937 random(5);
     std::normal_distribution<double> noise(0, 2);
     ColourImage image(camera.width(), camera.height());
-    const glm::dmat3 toWorld = glm::transpose(cameraFromWorld.rotationMatrix());
-    const glm::dvec3 from = cameraFromWorld.centre() - glm::dvec3(kEast, kNorth, kHeight);
-    for (int y = 0; y < image.height(); ++y)
+    for (int y = 0; y < image.height(); ++y) {
+      const RigidTransform pose = shutter.poseAtRow(cameraFromWorld, y, image.height());
+      const glm::dmat3 toWorld = glm::transpose(pose.rotationMatrix());
+      const glm::dvec3 from = pose.centre() - glm::dvec3(kEast, kNorth, kHeight);
       for (int x = 0; x < image.width(); ++x) {
         const auto direction = camera.unproject({x, y});
         const glm::dvec3 along = toWorld * *direction;
@@ -91,6 +93,7 @@ class Room {
         const auto shade = static_cast<std::uint8_t>(std::clamp(light + noise(random), 0.0, 255.0));
         image.at(x, y) = {shade, shade, shade, 255};
       }
+    }
     return image;
   }
 };
