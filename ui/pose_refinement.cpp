@@ -20,40 +20,31 @@ struct RefineOutcome {
   NetworkSummary summary;
   std::vector<std::string> frameNames;
   std::set<ObservationId> outliers;
-  std::shared_ptr<const Project> project;
 };
 
-/// What is known before the job starts; the project stays as it is.
+/// What is known before the job starts.
 struct RefineTask {
-  std::shared_ptr<const Project> project;
-  std::vector<ObservationId> ids;
   std::vector<ObservationRow> rows;
   NetworkFreedom freedom;
   glm::dvec3 judgedAt{0};
   std::string frame;
 };
 
-Result<RefineOutcome> run(const RefineTask& task, const Progress& progress) {
-  const auto refinement = networkOf(*task.project, task.frame, task.rows, task.freedom);
+Result<RefineOutcome> run(const RefineTask& task, Project& project, const Progress& progress) {
+  const auto refinement = networkOf(project, task.frame, task.rows, task.freedom);
   if (!refinement) return fail(refinement.error());
   NetworkOptions options;
   for (std::size_t i = 0; i < refinement->frames.size(); ++i)
     if (refinement->network.frames[i].name == task.frame) options.at.push_back({static_cast<int>(i), task.judgedAt});
-  Project copy = *task.project;
-  auto summary = refineNetwork(copy, *refinement, options, false, progress);
+  auto summary = refineNetwork(project, *refinement, options, false, progress);
   if (!summary) return fail(summary.error());
   RefineOutcome outcome;
   for (const NetworkFrame& frame : refinement->network.frames) outcome.frameNames.push_back(frame.name);
   for (const NetworkResidual& r : summary->residuals) {
     if (!r.outlier) continue;
-    const bool edge = r.kind == ResidualKind::Edge;
-    const bool point = r.kind == ResidualKind::Control || r.kind == ResidualKind::Scan || r.kind == ResidualKind::Tie;
-    if (!edge && !point) continue;
-    const auto& rows = edge ? refinement->edgeRows : refinement->observationRows;
-    outcome.outliers.insert(task.ids[rows[static_cast<std::size_t>(r.index)]]);
+    if (const auto row = refinement->rowOf(r)) outcome.outliers.insert(task.rows[*row].id);
   }
   outcome.summary = std::move(*summary);
-  outcome.project = std::make_shared<const Project>(std::move(copy));
   return outcome;
 }
 
@@ -160,114 +151,99 @@ void PoseRefinement::setJudgedAt(std::optional<glm::dvec3> world) {
   emit changed();
 }
 
+/// Works on a copy of the project; `take` keeps the outcome and says whether its poses are proposed. What belongs to a
+/// project that was changed meanwhile is dropped.
+template <class Work, class Take>
+void PoseRefinement::start(const QString& name, Work work, Take take) {
+  using Outcome = typename std::invoke_result_t<Work, Project&, const Progress&>::value_type;
+  struct Finished {
+    Outcome outcome;
+    std::shared_ptr<const Project> project;
+  };
+  m_running = true;
+  emit changed();
+  m_session.jobs().run(
+      name,
+      [work = std::move(work), base = m_session.project()](const Progress& progress) -> Result<Finished> {
+        Project copy = *base;
+        auto outcome = work(copy, progress);
+        if (!outcome) return fail(outcome.error());
+        return Finished{std::move(*outcome), std::make_shared<const Project>(std::move(copy))};
+      },
+      [this, name, take = std::move(take), base = m_session.project()](Result<Finished> finished) {
+        m_running = false;
+        if (!finished) {
+          m_session.messages().error(finished.error());
+        } else if (m_session.project() == base) {
+          forgetSummaries();
+          if (take(std::move(finished->outcome))) propose(base, finished->project, name);
+        }
+        emit changed();
+      });
+}
+
 void PoseRefinement::refine() {
   if (m_running || !m_session.currentFrame()) return;
   RefineTask task;
-  task.project = m_session.project();
   task.freedom = m_freedom;
   task.frame = m_session.currentFrame()->name;
-  Project used = *task.project;
+  Project used = *m_session.project();
   std::erase_if(used.observations, [&](const Observation& o) {
     const bool elsewhere = m_scope == RefinementScope::Frame && o.frame != m_session.frame();
     // One frame alone cannot place an unknown point.
     const bool loose = m_scope == RefinementScope::Frame && o.kind == ObservedKind::Tie;
-    return !o.enabled || elsewhere || loose || !used.findFrame(o.frame);
+    return elsewhere || loose;
   });
   task.rows = observationRowsOf(used);
   glm::dvec3 middle(0);
-  for (const Observation& o : used.observations) {
-    task.ids.push_back(o.id);
-    middle += o.world / static_cast<double>(used.observations.size());
-  }
+  double points = 0;
+  for (const Observation& o : used.observations)
+    if (o.enabled) middle = glm::mix(middle, o.world, 1 / ++points);
   // The expected millimetres are wanted where the work is.
   task.judgedAt = m_judgedAt.value_or(middle);
   const QString name = m_scope == RefinementScope::Frame ? tr("Refine pose of %1").arg(text(task.frame)) : tr("Refine poses");
-  m_running = true;
-  emit changed();
-  m_session.jobs().run(
-      name, [task](const Progress& progress) { return run(task, progress); },
-      [this, project = task.project, name](Result<RefineOutcome> outcome) {
-        m_running = false;
-        if (!outcome) {
-          m_session.messages().error(outcome.error());
-        } else if (m_session.project() == project) {
-          forgetSummaries();
-          m_summary = std::move(outcome->summary);
-          m_frameNames = std::move(outcome->frameNames);
-          m_outliers = std::move(outcome->outliers);
-          if (m_summary->converged) propose(project, outcome->project, name);
-        }
-        emit changed();
+  start(
+      name, [task](Project& project, const Progress& progress) { return run(task, project, progress); },
+      [this](RefineOutcome outcome) {
+        m_summary = std::move(outcome.summary);
+        m_frameNames = std::move(outcome.frameNames);
+        m_outliers = std::move(outcome.outliers);
+        return m_summary->converged;
       });
 }
 
 void PoseRefinement::alignAutomatically() {
   if (m_running || !m_session.currentFrame()) return;
-  struct Outcome {
-    AlignmentSummary summary;
-    std::shared_ptr<const Project> project;
-  };
-  const auto project = m_session.project();
-  const AlignTo target = alignmentTarget(*project);
+  const AlignTo target = alignmentTarget(*m_session.project());
   const QString name = (target == AlignTo::Scans ? tr("Align %1 with the scan") : tr("Align %1 with the design"))
                            .arg(text(m_session.currentFrame()->name));
-  m_running = true;
-  emit changed();
-  m_session.jobs().run(
+  start(
       name,
-      [project, target, data = m_session.data(), frame = m_session.frame()](const Progress& progress) -> Result<Outcome> {
-        Project copy = *project;
+      [target, data = m_session.data(), frame = m_session.frame()](Project& project, const Progress& progress) {
         PictureCache pictures(1);
-        auto summary = autoAlignFrame(copy, alignmentScene(copy, *data, target), pictures, frame, {}, false, progress);
-        if (!summary) return fail(summary.error());
-        return Outcome{std::move(*summary), std::make_shared<const Project>(std::move(copy))};
+        return autoAlignFrame(project, alignmentScene(project, *data, target), pictures, frame, {}, false, progress);
       },
-      [this, project, name](Result<Outcome> outcome) {
-        m_running = false;
-        if (!outcome) {
-          m_session.messages().error(outcome.error());
-        } else if (m_session.project() == project) {
-          forgetSummaries();
-          m_alignment = std::move(outcome->summary);
-          if (m_alignment->converged) propose(project, outcome->project, name);
-        }
-        emit changed();
+      [this](AlignmentSummary summary) {
+        m_alignment = std::move(summary);
+        return m_alignment->converged;
       });
 }
 
 void PoseRefinement::alignSequence() {
   if (m_running || m_session.project()->frames.empty()) return;
-  struct Outcome {
-    SequenceSummary summary;
-    std::shared_ptr<const Project> project;
-  };
-  const auto project = m_session.project();
-  const QString name = tr("Align all frames");
-  m_running = true;
-  emit changed();
-  m_session.jobs().run(
-      name,
-      [project, data = m_session.data()](const Progress& progress) -> Result<Outcome> {
+  start(
+      tr("Align all frames"),
+      [data = m_session.data()](Project& project, const Progress& progress) {
         SequenceOptions options;
-        options.everyNth = std::max(1, static_cast<int>(project->frames.size()) / kMostKeyframes);
-        Project copy = *project;
+        options.everyNth = std::max(1, static_cast<int>(project.frames.size()) / kMostKeyframes);
         PictureCache pictures(2);
-        auto summary = refineSequence(copy, alignmentScene(copy, *data, alignmentTarget(copy)), pictures, options, false, progress);
-        if (!summary) return fail(summary.error());
-        return Outcome{std::move(*summary), std::make_shared<const Project>(std::move(copy))};
+        return refineSequence(project, alignmentScene(project, *data, alignmentTarget(project)), pictures, options, false, progress);
       },
-      [this, project, name](Result<Outcome> outcome) {
-        m_running = false;
-        if (!outcome) {
-          m_session.messages().error(outcome.error());
-        } else if (m_session.project() == project) {
-          forgetSummaries();
-          m_sequence = std::move(outcome->summary);
-          m_summary = m_sequence->adjustment;
-          for (const NetworkFrame& frame : m_sequence->network.frames) m_frameNames.push_back(frame.name);
-          if (m_sequence->converged) propose(project, outcome->project, name);
-        }
-        emit changed();
+      [this](SequenceSummary summary) {
+        m_sequence = std::move(summary);
+        m_summary = m_sequence->adjustment;
+        for (const NetworkFrame& frame : m_sequence->network.frames) m_frameNames.push_back(frame.name);
+        return m_sequence->converged;
       });
 }
 

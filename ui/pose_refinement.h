@@ -68,6 +68,8 @@ class PoseRefinement : public QObject {
   void changed();
 
  private:
+  template <class Work, class Take>
+  void start(const QString& name, Work work, Take take);
   void forget();
   void forgetSummaries();
   void propose(std::shared_ptr<const Project> base, std::shared_ptr<const Project> candidate, const QString& name);

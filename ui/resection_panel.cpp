@@ -293,7 +293,11 @@ void ResectionPanel::refreshSummary() {
                .arg(summary->redundancy)
                .arg(summary->iterations);
   for (const ResidualGroup& group : summary->groups)
-    if (std::isfinite(group.rmsPx))
+    if (std::isfinite(group.rmsM))
+      lines << tr("%1%2: %3 rms of %4")
+                   .arg(text(residualKindName(group.kind)), group.heldOut ? tr(", held out") : QString(), formatMillimetres(group.rmsM))
+                   .arg(group.count);
+    else if (std::isfinite(group.rmsPx))
       lines << tr("%1%2: %3 px rms of %4")
                    .arg(text(residualKindName(group.kind)), group.heldOut ? tr(", held out") : QString())
                    .arg(group.rmsPx, 0, 'f', 2)
@@ -318,6 +322,9 @@ void ResectionPanel::refreshSummary() {
     lines << (m_refinement.judgedAt() ? tr("Overlay good to %1 mm at the chosen point (95 %)")
                                       : tr("Overlay good to %1 mm among the points (95 %)"))
                  .arg(expected.millimetres, 0, 'f', 1);
+  for (std::size_t i = 0; i < summary->cameraAccuracy.size(); ++i)
+    if (const CameraAccuracy& known = summary->cameraAccuracy[i]; !known.covariance.empty() && known.std(0) > 0)
+      lines << tr("Focal length %1 ± %2 px").arg(summary->cameras[i].fx, 0, 'f', 2).arg(known.std(0), 0, 'f', 2);
   for (const std::string& pair : summary->correlations) lines << tr("▲ %1").arg(text(pair));
   for (const std::string& warning : summary->warnings) lines << tr("▲ %1").arg(text(warning));
   if (const int outliers = summary->outlierCount(); outliers > 0)

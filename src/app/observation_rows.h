@@ -10,6 +10,7 @@
 #include <glm/glm.hpp>
 
 #include "base/error.h"
+#include "survey/ids.h"
 
 namespace alidade {
 
@@ -33,6 +34,7 @@ struct ObservationRow {
   std::optional<glm::dvec3> world, second;
   double sigmaPx = 0.5, sigmaM = 0, depthM = 0;
   bool heldOut = false;
+  ObservationId id;    ///< of the project's own
 };
 
 /// CSV with a header of columns in any order: u,v,e,n,h[,sigma_px][,name][,frame][,kind][,use][,sigma_m][,e2,n2,h2][,depth_m].

@@ -16,6 +16,11 @@ namespace alidade {
 
 namespace {
 
+/// Says something of a point that other rows observe.
+bool isOfPoint(const ObservationRow& row) {
+  return row.kind == ObservationKind::Surface || row.kind == ObservationKind::Depth;
+}
+
 /// Builds the network row by row.
 class Builder {
  public:
@@ -101,16 +106,21 @@ Result<int> Builder::pointOf(const ObservationRow& row) {
 
 Result<void> Builder::add(const ObservationRow& row, std::size_t index) {
   Network& n = m_made.network;
-  if (row.kind == ObservationKind::Surface || row.kind == ObservationKind::Depth) {
+  if (isOfPoint(row)) {
     const auto point = m_points.find(row.name);
-    if (point == m_points.end()) return fail("No row above observes the point '" + row.name + "'", row.where, "Put the point's observations first");
+    if (point == m_points.end()) return fail("No row observes the point '" + row.name + "'", row.where, "Add a row where a picture shows it");
     if (row.kind == ObservationKind::Surface) {
-      n.points[point->second].surface = SurfaceHold{*row.world, *row.second, row.sigmaM};
+      NetworkPoint& held = n.points[point->second];
+      if (held.kind != PointKind::Tie) return fail("'" + row.name + "' is a known point: it needs no surface", row.where, "Delete the row, or make it a tie point");
+      if (held.surface) return fail("'" + row.name + "' lies on two surfaces", row.where, "Delete one of the two");
+      held.surface = SurfaceHold{*row.world, *row.second, row.sigmaM};
+      m_made.surfaceRows[point->second] = index;
       return {};
     }
     const auto frame = frameOf(row);
     if (!frame) return fail(frame.error());
     n.depths.push_back({*frame, point->second, row.depthM, row.sigmaM, row.heldOut});
+    m_made.depthRows.push_back(index);
     return {};
   }
   const auto frame = frameOf(row);
@@ -159,9 +169,34 @@ ObservationKind kindOf(ObservedKind kind) {
 Result<NetworkRefinement> networkOf(const Project& project, const std::string& frame,
                                     const std::vector<ObservationRow>& rows, const NetworkFreedom& freedom) {
   Builder builder(project, frame, freedom);
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    if (const auto added = builder.add(rows[i], i); !added) return fail(added.error());
-  return builder.take();
+  // What is known of a point comes after the point, wherever its row stands.
+  for (const bool points : {true, false})
+    for (std::size_t i = 0; i < rows.size(); ++i)
+      if (isOfPoint(rows[i]) != points)
+        if (const auto added = builder.add(rows[i], i); !added) return fail(added.error());
+  NetworkRefinement made = builder.take();
+  auto clocks = tieMotion(project, made.frames, freedom.ties, made.network);
+  if (!clocks) return fail(clocks.error());
+  made.clocks = std::move(*clocks);
+  return made;
+}
+
+std::optional<std::size_t> NetworkRefinement::rowOf(const NetworkResidual& residual) const {
+  const auto index = static_cast<std::size_t>(residual.index);
+  switch (residual.kind) {
+    case ResidualKind::Control:
+    case ResidualKind::Scan:
+    case ResidualKind::Tie:
+      return observationRows[index];
+    case ResidualKind::Edge:
+      return edgeRows[index];
+    case ResidualKind::Depth:
+      return depthRows[index];
+    case ResidualKind::Surface:
+      return surfaceRows.at(residual.index);
+    default:
+      return std::nullopt;
+  }
 }
 
 std::vector<ObservationRow> observationRowsOf(const Project& project) {
@@ -172,6 +207,7 @@ std::vector<ObservationRow> observationRowsOf(const Project& project) {
     if (!o.enabled || !frame) continue;
     ObservationRow row;
     row.where = fmt::format("{}, observation {}", project.path, i + 1);
+    row.id = o.id;
     row.frame = frame->name;
     row.name = o.name.empty() ? fmt::format("observation {}", i + 1) : o.name;
     row.kind = kindOf(o.kind);
@@ -186,6 +222,7 @@ Result<NetworkSummary> refineNetwork(Project& project, const NetworkRefinement& 
                                      bool dryRun, const Progress& progress) {
   auto summary = adjustNetwork(refinement.network, options, progress);
   if (!summary || !summary->converged || dryRun) return summary;
+  applyClocks(project, refinement.network, refinement.clocks, *summary);
   for (std::size_t i = 0; i < refinement.frames.size(); ++i) {
     Frame& frame = *project.findFrame(refinement.frames[i]);
     const AdjustedPose& adjusted = summary->poses[refinement.network.frames[i].pose];

@@ -3,11 +3,14 @@
 
 #pragma once
 
+#include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "adjust/network.h"
 #include "app/observation_rows.h"
+#include "app/rig_network.h"
 #include "survey/project.h"
 
 namespace alidade {
@@ -17,6 +20,7 @@ struct NetworkFreedom {
   std::array<bool, 3> lockPosition{};  ///< E N H of the camera's centre
   std::array<bool, 3> lockAttitude{};  ///< rotation about the camera's x y z
   bool focal = false, principalPoint = false, distortion = false;
+  MotionTies ties;
 };
 
 /// The frames that a network refines, and the network itself.
@@ -24,7 +28,12 @@ struct NetworkRefinement {
   std::vector<FrameId> frames;      ///< one a NetworkFrame
   std::vector<CameraId> cameras;    ///< one a NetworkCamera
   Network network;
-  std::vector<std::size_t> observationRows, edgeRows;  ///< the row behind each of the network's observations and edges
+  NetworkClocks clocks;
+  std::vector<std::size_t> observationRows, edgeRows, depthRows;  ///< the row behind each of the network's lists
+  std::map<int, std::size_t> surfaceRows;                         ///< that of a point's surface
+
+  /// The row that a residual belongs to; nothing for priors and what else no row said.
+  std::optional<std::size_t> rowOf(const NetworkResidual& residual) const;
 };
 
 /// Rows as a network over the project's frames; rows that name no frame belong to `frame`. Errors name the row: a frame

@@ -11,6 +11,8 @@
 
 #include "align/patch_matching.h"
 #include "align/picture_levels.h"
+#include "align/row_photo.h"
+#include "app/pose_clock.h"
 #include "base/parallel.h"
 
 namespace alidade {
@@ -33,20 +35,17 @@ bool standsStill(const RigidTransform& a, const RigidTransform& b) {
   return glm::distance(a.centre(), b.centre()) < kStillM && rotationAngleBetween(a, b) < kStillRad;
 }
 
-/// The larger standard deviation of a place.
-double sigmaOf(const SeenPlace& place) {
+/// What a place is good for: its standard deviations where it is known best and least, and in the picture the unit direction
+/// in which it is known least, along an edge.
+struct Certainty {
+  double bestPx, leastPx;
+  glm::dvec2 along;
+};
+Certainty certaintyOf(const SeenPlace& place) {
   const glm::dmat2& w = place.information;
   const double mean = 0.5 * (w[0][0] + w[1][1]), half = std::hypot(0.5 * (w[0][0] - w[1][1]), w[1][0]);
-  return 1 / std::sqrt(std::max(1e-9, mean - half));
-}
-
-/// What a place on an edge is good for, and in the picture the unit direction along its edge.
-double sigmaAcross(const SeenPlace& place, glm::dvec2& along) {
-  const glm::dmat2& w = place.information;
   const double angle = 0.5 * std::atan2(2 * w[1][0], w[0][0] - w[1][1]);
-  along = {-std::sin(angle), std::cos(angle)};
-  const double mean = 0.5 * (w[0][0] + w[1][1]), half = std::hypot(0.5 * (w[0][0] - w[1][1]), w[1][0]);
-  return 1 / std::sqrt(std::max(1e-9, mean + half));
+  return {1 / std::sqrt(std::max(1e-9, mean + half)), 1 / std::sqrt(std::max(1e-9, mean - half)), {-std::sin(angle), std::cos(angle)}};
 }
 
 class Sequence {
@@ -127,6 +126,7 @@ class Sequence {
     const RigidTransform start = predicted(i);
     key.guess = start;
     AlignmentOptions options = m_options.alignment;
+    options.shutter = shutterOf(m_project, frame);
     for (const bool near : {true, false}) {
       options.startIsNear = near;
       if (near && i == 0) continue;
@@ -159,9 +159,9 @@ class Sequence {
     parallelFor(patches.size(), 4, [&](std::size_t begin, std::size_t end, int) {
       for (std::size_t i = begin; i < end; ++i) {
         const glm::dvec2 at(patches[i].at);
-        const auto surface = surfaceAt(view, from->camera, m_keys[first].guess, at);
+        const auto surface = surfaceAt(view, from->camera, m_keys[first].guess, middlePixel(view, *from, at));
         if (!surface) continue;
-        const auto expected = to->camera.project(m_keys[second].guess * surface->first);
+        const auto expected = project(to->camera, to->shutter, m_keys[second].guess * surface->first);
         if (!expected) continue;
         const auto place = findPatch(patches[i], to->luma, kTieRadius, kTieCorrelation, glm::ivec2(glm::round(*expected - at)));
         if (!place || place->sigmaPx > kTieSigmaPx) continue;
@@ -178,7 +178,15 @@ class Sequence {
     if (!picture) return std::nullopt;
     const int width = std::min(kTieWidth, (*picture)->width());
     auto levels = picturePyramid(**picture, m_project.findCamera(key.camera)->camera, width, width);
+    levels.back().shutter = shutterOf(m_project, *m_project.findFrame(key.id));
     return std::move(levels.back());
+  }
+
+  /// Where the middle row's pose sees what a rolling shutter's picture shows at a pixel, as far away as the view is there.
+  static glm::dvec2 middlePixel(const ScanView& view, const PictureLevel& level, const glm::dvec2& pixel) {
+    const float depth = view.depth.at(static_cast<int>(pixel.x), static_cast<int>(pixel.y));
+    const auto seen = level.shutter.isOn() && depth > 0 ? photoPixel(level.camera, level.shutter, pixel, depth) : std::nullopt;
+    return seen ? pixel - (*seen - pixel) : pixel;
   }
 
   /// Place and normal of the scan behind a pixel, where it is a smooth surface.
@@ -226,21 +234,21 @@ class Sequence {
   }
 
   /// Keyframes that were found, and those that enough points tie to one that was.
-  std::vector<int> posesOf() const {
-    std::vector<int> ties(m_keys.size(), 0), poses(m_keys.size(), -1);
+  std::vector<int> framesOf() const {
+    std::vector<int> ties(m_keys.size(), 0), frames(m_keys.size(), -1);
     for (const Tie& tie : m_ties) ++ties[tie.first], ++ties[tie.second];
     int count = 0;
     for (std::size_t i = 0; i < m_keys.size(); ++i)
-      if (m_keys[i].aligned || ties[i] >= kLeastTies) poses[i] = count++;
-    return poses;
+      if (m_keys[i].aligned || ties[i] >= kLeastTies) frames[i] = count++;
+    return frames;
   }
 
-  Network networkOf(const std::vector<int>& poses) const {
+  /// One pose a frame to begin with; `ids`: of the network's frames.
+  Network networkOf(const std::vector<int>& frames, std::vector<FrameId>& ids) const {
     Network n;
     std::map<CameraId, int> cameras;
-    std::map<CameraId, NetworkSmoothness> smoothness;
     for (std::size_t i = 0; i < m_keys.size(); ++i) {
-      if (poses[i] < 0) continue;
+      if (frames[i] < 0) continue;
       const Key& key = m_keys[i];
       const Frame& frame = *m_project.findFrame(key.id);
       const auto [camera, isNew] = cameras.emplace(key.camera, static_cast<int>(n.cameras.size()));
@@ -253,30 +261,38 @@ class Sequence {
       for (int k = 0; k < 3; ++k) pose.locked[k] = m_options.alignment.lockPosition[k], pose.locked[3 + k] = m_options.alignment.lockAttitude;
       n.poses.push_back(pose);
       NetworkFrame made;
-      made.name = frame.name, made.pose = poses[i], made.camera = camera->second;
+      made.name = frame.name, made.pose = frames[i], made.camera = camera->second, made.shutter = shutterOf(m_project, frame);
       n.frames.push_back(made);
-      if (!key.still) {
-        NetworkSmoothness& s = smoothness[key.camera];
-        if (s.poses.empty() || n.poses[s.poses.back()].timeSecs < frame.timeSecs) s.poses.push_back(poses[i]);
-      }
-      addPlaces(key, poses[i], n);
-    }
-    for (auto& [camera, s] : smoothness) {
-      s.metresPerSecond2 = m_options.metresPerSecond2, s.radiansPerSecond2 = m_options.radiansPerSecond2;
-      if (s.poses.size() >= 3) n.smoothness.push_back(s);
+      ids.push_back(key.id);
+      addPlaces(key, frames[i], n);
     }
     for (const Tie& tie : m_ties) {
-      if (poses[tie.first] < 0 || poses[tie.second] < 0) continue;
+      if (frames[tie.first] < 0 || frames[tie.second] < 0) continue;
       NetworkPoint point;
       point.name = fmt::format("tie {}", n.points.size() + 1);
       point.world = tie.world;
       point.surface = SurfaceHold{tie.world, tie.normal, std::max(0.003, m_scene.spacingM() / std::sqrt(12.0))};
       const int index = static_cast<int>(n.points.size());
       n.points.push_back(point);
-      n.observations.push_back({poses[tie.first], index, tie.firstPixel, 0.1 * tie.scale, false});
-      n.observations.push_back({poses[tie.second], index, tie.secondPixel, kTieSigmaPx * tie.scale, false});
+      n.observations.push_back({frames[tie.first], index, tie.firstPixel, 0.1 * tie.scale, false});
+      n.observations.push_back({frames[tie.second], index, tie.secondPixel, kTieSigmaPx * tie.scale, false});
     }
     return n;
+  }
+
+  /// Bodies that move do so smoothly: those that one camera carries, in time order.
+  void smooth(const std::vector<int>& frames, Network& n) const {
+    std::map<int, NetworkSmoothness> smoothness;
+    for (std::size_t i = 0; i < m_keys.size(); ++i) {
+      if (frames[i] < 0 || m_keys[i].still) continue;
+      const NetworkFrame& frame = n.frames[frames[i]];
+      NetworkSmoothness& s = smoothness[frame.mount < 0 ? frame.camera : n.frames.front().camera];
+      if (s.poses.empty() || n.poses[s.poses.back()].timeSecs < n.poses[frame.pose].timeSecs) s.poses.push_back(frame.pose);
+    }
+    for (auto& [camera, s] : smoothness) {
+      s.metresPerSecond2 = m_options.metresPerSecond2, s.radiansPerSecond2 = m_options.radiansPerSecond2;
+      if (s.poses.size() >= 3) n.smoothness.push_back(s);
+    }
   }
 
   /// Places of edges, each with a piece of its edge at its own depth.
@@ -289,9 +305,9 @@ class Sequence {
       const SeenPlace& place = key.places[i];
       const glm::dvec3 here = key.guess * place.world;
       const auto pixel = camera.project(here);
-      glm::dvec2 along(0);
-      const double sigma = key.alignment.estimate.sigma0 * sigmaAcross(place, along);
-      const auto beside = pixel ? camera.unproject(*pixel + kEdgePiecePx * key.alignment.levelScale * along) : std::nullopt;
+      const Certainty known = certaintyOf(place);
+      const double sigma = key.alignment.estimate.sigma0 * known.bestPx;
+      const auto beside = pixel ? camera.unproject(*pixel + kEdgePiecePx * key.alignment.levelScale * known.along) : std::nullopt;
       if (!beside) continue;
       const glm::dvec3 to = key.guess.inverse() * (*beside * here.z);
       ++taken;
@@ -308,7 +324,7 @@ class Sequence {
     if (!m_scene.hasColour()) return addEdges(key, frame, n);
     std::vector<const SeenPlace*> sure;
     for (const SeenPlace& place : key.places)
-      if (sigmaOf(place) < kWeakestPx * key.alignment.levelScale) sure.push_back(&place);
+      if (certaintyOf(place).leastPx < kWeakestPx * key.alignment.levelScale) sure.push_back(&place);
     const std::size_t step = std::max<std::size_t>(1, sure.size() / static_cast<std::size_t>(m_options.placesAFrame));
     const int held = heldOutEvery();
     int taken = 0;
@@ -316,7 +332,7 @@ class Sequence {
       NetworkPoint point;
       point.name = fmt::format("{} place {}", n.frames[frame].name, ++taken);
       point.kind = PointKind::Scan, point.world = sure[i]->world;
-      const double sigma = key.alignment.estimate.sigma0 * std::hypot(sigmaOf(*sure[i]), 0.1 * key.alignment.levelScale);
+      const double sigma = key.alignment.estimate.sigma0 * std::hypot(certaintyOf(*sure[i]).leastPx, 0.1 * key.alignment.levelScale);
       n.observations.push_back({frame, static_cast<int>(n.points.size()), sure[i]->pixel, sigma, held > 0 && taken % held == 0});
       n.points.push_back(std::move(point));
     }
@@ -324,7 +340,7 @@ class Sequence {
 
   Result<SequenceSummary> adjust() {
     SequenceSummary summary;
-    summary.poseOf = posesOf();
+    summary.seenAs = framesOf();
     summary.alarms = m_alarms;
     int aligned = 0;
     for (const Key& key : m_keys) {
@@ -338,7 +354,12 @@ class Sequence {
       summary.reason = "no frame could be aligned: " + m_keys.front().reason;
       return summary;
     }
-    summary.network = networkOf(summary.poseOf);
+    std::vector<FrameId> ids;
+    summary.network = networkOf(summary.seenAs, ids);
+    auto clocks = tieMotion(m_project, ids, m_options.ties, summary.network);
+    if (!clocks) return fail(clocks.error());
+    summary.clocks = std::move(*clocks);
+    smooth(summary.seenAs, summary.network);
     m_progress.report(0.92, "Adjusting");
     auto adjusted = adjustNetwork(summary.network, {}, m_progress.part(0.92, 1));
     if (!adjusted) return fail(adjusted.error());
@@ -346,9 +367,9 @@ class Sequence {
     summary.converged = summary.adjustment.converged, summary.reason = summary.adjustment.reason;
     if (!summary.converged) return summary;
     for (std::size_t i = 0; i < m_keys.size(); ++i) {
-      if (summary.poseOf[i] < 0) continue;
+      if (summary.seenAs[i] < 0) continue;
       summary.frames[i].refined = true;
-      summary.frames[i].after = cameraFromWorld(summary.network, summary.adjustment, summary.poseOf[i]);
+      summary.frames[i].after = cameraFromWorld(summary.network, summary.adjustment, summary.seenAs[i]);
     }
     return summary;
   }
@@ -368,7 +389,10 @@ void carryBetween(Project& project, const SequenceSummary& summary) {
   std::map<FrameId, const SequenceFrame*> keys;
   for (const SequenceFrame& frame : summary.frames)
     if (frame.refined) keys.emplace(frame.frame, &frame);
-  const auto corrected = [](const SequenceFrame& key, const RigidTransform& pose) { return pose * key.before.inverse() * key.after; };
+  // From the poses that the keyframes have now: another clock offset has moved them with the others.
+  const auto corrected = [&](const SequenceFrame& key, const RigidTransform& pose) {
+    return pose * project.findFrame(key.frame)->cameraFromWorld.value_or(key.before).inverse() * key.after;
+  };
   for (std::size_t i = 0; i < project.frames.size(); ++i) {
     Frame& frame = project.frames[i];
     if (!frame.cameraFromWorld || keys.contains(frame.id)) continue;
@@ -402,11 +426,12 @@ Result<SequenceSummary> refineSequence(Project& project, const AlignmentScene& s
                                        const SequenceOptions& options, bool dryRun, const Progress& progress) {
   auto summary = Sequence(project, scene, pictures, options, progress).run();
   if (!summary || !summary->converged || dryRun) return summary;
+  applyClocks(project, summary->network, summary->clocks, summary->adjustment);
   carryBetween(project, *summary);
   for (std::size_t i = 0; i < summary->frames.size(); ++i) {
     if (!summary->frames[i].refined) continue;
     Frame& frame = *project.findFrame(summary->frames[i].frame);
-    const AdjustedPose& pose = summary->adjustment.poses[summary->poseOf[i]];
+    const AdjustedPose& pose = summary->poseOf(i);
     if (!frame.originalCameraFromWorld) frame.originalCameraFromWorld = frame.cameraFromWorld;
     frame.cameraFromWorld = summary->frames[i].after;
     frame.poseSource = PoseSource::Refined;
@@ -425,7 +450,7 @@ std::string SequenceSummary::report(const Project& project) const {
       text += fmt::format("{}: left as it was: {}\n", name, f.reason.empty() ? reason : f.reason);
       continue;
     }
-    const AdjustedPose& pose = adjustment.poses[poseOf[i]];
+    const AdjustedPose& pose = poseOf(i);
     text += fmt::format("{}: moved {:.3f} m, turned {:.3f}°, std {:.1f} {:.1f} {:.1f} mm{}\n", name,
                         glm::distance(f.before.centre(), f.after.centre()), rotationAngleBetween(f.before, f.after) * 57.29577951308232,
                         1000 * pose.positionStdM.x, 1000 * pose.positionStdM.y, 1000 * pose.positionStdM.z,
@@ -438,6 +463,10 @@ std::string SequenceSummary::report(const Project& project) const {
   }
   if (!converged) return text;
   text += fmt::format("sigma naught {:.2f}, redundancy {}\n", adjustment.sigma0, adjustment.redundancy);
+  for (std::size_t i = 0; i < adjustment.clockOffsetSecs.size(); ++i)
+    text += fmt::format("clock offset {:.4f} s{}\n", adjustment.clockOffsetSecs[i],
+                        network.trajectories[i].clockFree ? fmt::format(" ± {:.4f} s", adjustment.clockStdSecs[i]) : std::string(", locked"));
+  text += mountsText(network, adjustment);
   for (const ResidualGroup& g : adjustment.groups)
     text += fmt::format("{}{}: {} observations, {} outliers, {:.2f} sigma{}\n", residualKindName(g.kind), g.heldOut ? " (held out)" : "",
                         g.count, g.outliers, g.rmsSigmas, std::isfinite(g.rmsPx) ? fmt::format(", {:.2f} px", g.rmsPx) : std::string());

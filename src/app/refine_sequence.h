@@ -8,15 +8,17 @@
 
 #include "adjust/network.h"
 #include "app/auto_align.h"
+#include "app/rig_network.h"
 
 namespace alidade {
 
 struct SequenceOptions {
   AlignmentOptions alignment;
   int everyNth = 1;            ///< frames between keyframes; those between two get their motion
-  int placesAFrame = 80;       ///< of the scan, kept for the adjustment
-  int tiesAPair = 40;          ///< natural points followed from keyframe to keyframe, held to the scan's surface
+  int placesAFrame = 80;       ///< of the scene, kept for the adjustment
+  int tiesAPair = 40;          ///< natural points followed from keyframe to keyframe, held to the scene's surface
   double heldOutShare = 0.1;   ///< of the places: they take no part and check the result
+  MotionTies ties;             ///< cameras on one rig, poses held to trajectories
   double metresPerSecond2 = 3, radiansPerSecond2 = 3;  ///< how smoothly a camera moves; see NetworkSmoothness
 
   Result<void> validate() const;
@@ -26,7 +28,7 @@ struct SequenceOptions {
 struct SequenceFrame {
   FrameId frame;
   RigidTransform before, after;  ///< camera from world; the same where it could not be refined
-  bool aligned = false;          ///< found itself in the scan; else it hangs on its neighbours or was left out
+  bool aligned = false;          ///< found itself in the scene; else it hangs on its neighbours or was left out
   bool refined = false;
   std::string reason;            ///< why not
   double expectedPx = 0;         ///< of the alignment, 95 %
@@ -43,17 +45,20 @@ struct SequenceSummary {
   bool converged = false;
   std::string reason;
   std::vector<SequenceFrame> frames;
-  std::vector<int> poseOf;       ///< of each frame, index into the network's poses; -1: left out
+  std::vector<int> seenAs;       ///< of each frame, index into the network's frames; -1: left out
   Network network;
+  NetworkClocks clocks;
   NetworkSummary adjustment;     ///< sigma naught, each pose's standard deviations, held-out places
   std::vector<MovementAlarm> alarms;
 
+  /// Of a refined frame; that of its body, where its camera sits on a rig.
+  const AdjustedPose& poseOf(std::size_t frame) const { return adjustment.poses[network.frames[seenAs[frame]].pose]; }
   std::string report(const Project& project) const;
 };
 
-/// Refines all frames with a pose together. Each keyframe is aligned with the scan, from where the one before says it
-/// should be, so that a drift of any size is followed; then the places of the scan that were found, natural points followed
-/// from keyframe to keyframe and held to the scan's surface, and the smoothness of the motion are adjusted at once. Frames
+/// Refines all frames with a pose together. Each keyframe is aligned with the scene, scan or design, from where the one before says it
+/// should be, so that a drift of any size is followed; then the places of the scene that were found, natural points followed
+/// from keyframe to keyframe and held to the scene's surface, and the smoothness of the motion are adjusted at once. Frames
 /// of one camera whose poses are all the same stand still: no smoothness, and an alarm where one moved.
 ///
 /// The project gets the new poses, with their quality, where the adjustment converged and not `dryRun`; else, and

@@ -23,7 +23,7 @@ using Json = nlohmann::ordered_json;
 struct Arguments {
   std::string project, frame, observations, lock, free;
   std::vector<std::string> at;
-  bool dryRun = false, automatic = false, sequence = false;
+  bool dryRun = false, automatic = false, sequence = false, rig = false, trajectory = false;
   double withinPx = 1;
   std::optional<AlignTo> to;
   int keyframes = 1;
@@ -38,7 +38,9 @@ Result<void> applyFree(const std::string& list, NetworkFreedom& freedom) {
     if (name == "focal") freedom.focal = true;
     else if (name == "principal-point") freedom.principalPoint = true;
     else if (name == "distortion") freedom.distortion = true;
-    else return fail("'" + name + "' cannot be freed", "--free", "Free focal, principal-point or distortion; poses are free unless --lock names them");
+    else if (name == "rig") freedom.ties.rig = freedom.ties.freeMounts = true;
+    else if (name == "clock") freedom.ties.trajectory = freedom.ties.freeClock = true;
+    else return fail("'" + name + "' cannot be freed", "--free", "Free focal, principal-point, distortion, rig or clock; poses are free unless --lock names them");
     start = comma + 1;
   }
   return {};
@@ -93,7 +95,27 @@ Json expectedOf(const std::vector<ExpectedError>& all) {
   return list;
 }
 
-Json jsonOf(const NetworkRefinement& refinement, const NetworkSummary& summary, bool dryRun) {
+/// The parameters by name, and those that were free with their standard deviations and correlations.
+Json calibrationOf(const Network& network, const NetworkSummary& summary, std::size_t camera) {
+  const Intrinsics& lens = summary.cameras[camera];
+  const auto names = parameterNames(lens.model);
+  const auto values = lens.parameters();
+  Json json = {{"name", network.cameras[camera].name}, {"model", cameraModelName(lens.model)}, {"parameters", values}, {"parameter_names", names}};
+  if (camera >= summary.cameraAccuracy.size() || summary.cameraAccuracy[camera].covariance.empty()) return json;
+  const CameraAccuracy& accuracy = summary.cameraAccuracy[camera];
+  Json std = Json::array(), correlation = Json::array();
+  const int count = static_cast<int>(names.size());
+  for (int a = 0; a < count; ++a) {
+    std.push_back(accuracy.std(a));
+    Json row = Json::array();
+    for (int b = 0; b < count; ++b) row.push_back(accuracy.correlation(a, b));
+    correlation.push_back(std::move(row));
+  }
+  json["parameter_std"] = std::move(std), json["correlation"] = std::move(correlation);
+  return json;
+}
+
+Json jsonOf(const Project& project, const NetworkRefinement& refinement, const NetworkSummary& summary, bool dryRun) {
   const Network& network = refinement.network;
   Json json = {{"converged", summary.converged}, {"reason", summary.reason}, {"iterations", summary.iterations},
                {"initial_cost", summary.initialCost}, {"final_cost", summary.finalCost}, {"sigma0", summary.sigma0},
@@ -109,18 +131,16 @@ Json jsonOf(const NetworkRefinement& refinement, const NetworkSummary& summary, 
   }
   for (const ResidualGroup& g : summary.groups)
     groups.push_back({{"kind", residualKindName(g.kind)}, {"held_out", g.heldOut}, {"count", g.count}, {"outliers", g.outliers},
-                      {"rms_px", finite(g.rmsPx)}, {"rms_sigmas", finite(g.rmsSigmas)}});
+                      {"rms_px", finite(g.rmsPx)}, {"rms_m", finite(g.rmsM)}, {"rms_sigmas", finite(g.rmsSigmas)}});
   for (const NetworkResidual& r : summary.residuals) {
     if (r.outlier) outliers.push_back(r.name);
     residuals.push_back({{"name", r.name}, {"frame", r.frame < 0 ? Json(nullptr) : Json(network.frames[r.frame].name)},
                          {"kind", residualKindName(r.kind)}, {"du_px", finite(r.residualPx.x)}, {"dv_px", finite(r.residualPx.y)},
-                         {"sigmas", finite(r.sigmas)}, {"outlier", r.outlier}, {"held_out", r.heldOut}});
+                         {"residual_m", finite(r.residualM)}, {"sigmas", finite(r.sigmas)}, {"outlier", r.outlier}, {"held_out", r.heldOut}});
   }
   for (const CheckPoint& c : summary.checkPoints) checks.push_back({{"name", c.name}, {"difference_m", vec(c.differenceM)}});
   Json cameras = Json::array();
-  for (std::size_t i = 0; i < summary.cameras.size(); ++i)
-    cameras.push_back({{"name", network.cameras[i].name}, {"model", cameraModelName(summary.cameras[i].model)},
-                       {"parameters", summary.cameras[i].parameters()}});
+  for (std::size_t i = 0; i < summary.cameras.size(); ++i) cameras.push_back(calibrationOf(network, summary, i));
   json["frames"] = std::move(frames);
   json["cameras"] = std::move(cameras);
   json["expected_error_mm"] = expectedOf(summary.expected);
@@ -130,6 +150,7 @@ Json jsonOf(const NetworkRefinement& refinement, const NetworkSummary& summary, 
   json["warnings"] = summary.warnings;
   json["outliers"] = std::move(outliers);
   json["residuals"] = std::move(residuals);
+  addMotion(project, network, refinement.clocks, summary, json);
   json["saved"] = summary.converged && !dryRun;
   return json;
 }
@@ -169,7 +190,7 @@ Answer answerOf(Json json, std::string text, bool converged) {
 bool isResection(const std::vector<ObservationRow>& rows, const std::string& frame, const NetworkFreedom& freedom) {
   const auto& [rx, ry, rz] = freedom.lockAttitude;
   if (rx != ry || ry != rz) return false;
-  if (frame.empty() || freedom.focal || freedom.principalPoint || freedom.distortion) return false;
+  if (frame.empty() || freedom.ties.any() || freedom.focal || freedom.principalPoint || freedom.distortion) return false;
   return std::all_of(rows.begin(), rows.end(), [&](const ObservationRow& row) {
     return (row.kind == ObservationKind::Control || row.kind == ObservationKind::Scan) && !row.heldOut &&
            (row.frame.empty() || row.frame == frame);
@@ -202,14 +223,14 @@ Result<Answer> runNetwork(Project& project, const Arguments& arguments, const st
   if (!summary) return fail(summary.error());
   if (summary->converged && !arguments.dryRun)
     if (auto saved = saveProject(project, arguments.project); !saved) return fail(saved.error());
-  return answerOf(jsonOf(*refinement, *summary, arguments.dryRun), summary->report(refinement->network), summary->converged);
+  return answerOf(jsonOf(project, *refinement, *summary, arguments.dryRun), summary->report(refinement->network), summary->converged);
 }
 
-Result<Answer> runPictures(const Arguments& arguments, const ResectionOptions& locks, const Progress& progress) {
+Result<Answer> runPictures(const Arguments& arguments, const ResectionOptions& locks, const MotionTies& ties, const Progress& progress) {
   RefinePictures wanted{arguments.project, arguments.frame, {}, arguments.keyframes, arguments.dryRun};
   wanted.options.lockPosition = locks.lockPosition, wanted.options.lockAttitude = locks.lockAttitude;
   wanted.options.acceptedPx = arguments.withinPx;
-  wanted.to = arguments.to;
+  wanted.to = arguments.to, wanted.ties = ties;
   return arguments.sequence ? refineTogether(wanted, progress) : refineAutomatically(wanted, progress);
 }
 
@@ -218,12 +239,17 @@ Result<Answer> run(const Arguments& arguments, const Progress& progress) {
   NetworkFreedom freedom;
   if (auto done = applyLocks(arguments.lock, freedom); !done) return fail(done.error());
   if (auto done = applyFree(arguments.free, freedom); !done) return fail(done.error());
+  freedom.ties.rig |= arguments.rig, freedom.ties.trajectory |= arguments.trajectory;
   options.lockPosition = freedom.lockPosition, options.lockAttitude = freedom.lockAttitude[0];
   const auto& turns = freedom.lockAttitude;
   if (arguments.automatic || arguments.sequence) {
     if (turns[0] != turns[1] || turns[1] != turns[2])
       return fail("One rotation alone cannot be locked here", "--lock", "Lock attitude as a whole, or refine from observations");
-    return runPictures(arguments, options, progress);
+    if (freedom.focal || freedom.principalPoint || freedom.distortion)
+      return fail("A calibration is not adjusted from alignments", "--free", "Free rig or clock here, or refine from observations");
+    if (arguments.automatic && freedom.ties.any())
+      return fail("One frame alone has no rig and no clock", "--auto", "Refine a --sequence");
+    return runPictures(arguments, options, freedom.ties, progress);
   }
   for (const std::string& text : arguments.at) {
     auto point = parsePoint(text);
@@ -259,8 +285,10 @@ void addRefine(Verbs& verbs) {
                       "without it, those that the project keeps");
   command->add_option("--lock", arguments->lock, "Of position,attitude,x,y,z,rx,ry,rz (rotations about the camera's axes)")
       ->check(checkedBy([](const std::string& list) { NetworkFreedom ignored; return applyLocks(list, ignored); }, "LIST"));
-  command->add_option("--free", arguments->free, "Of focal,principal-point,distortion, beside the poses")
+  command->add_option("--free", arguments->free, "Of focal,principal-point,distortion,rig,clock, beside the poses")
       ->check(checkedBy([](const std::string& list) { NetworkFreedom ignored; return applyFree(list, ignored); }, "LIST"));
+  command->add_flag("--rig", arguments->rig, "Cameras with pictures of the same moments sit on one body, as the poses say; --free rig adjusts where");
+  command->add_flag("--trajectory", arguments->trajectory, "Hold the poses to their trajectories; --free clock adjusts the clock offset, too");
   command->add_option("--at", arguments->at, "E,N,H where the expected error is wanted")
       ->check(checkedBy(parsePoint, "POINT"));
   command->add_flag("--auto", arguments->automatic,

@@ -42,6 +42,24 @@ Json jsonOf(const std::string& frame, const AlignmentSummary& summary) {
 
 }  // namespace
 
+void addMotion(const Project& project, const Network& network, const NetworkClocks& clocks, const NetworkSummary& summary, Json& json) {
+  Json mounts = Json::array(), offsets = Json::array();
+  for (std::size_t i = 0; i < network.mounts.size(); ++i) {
+    const RigidTransform cameraFromBody = i < summary.cameraFromBody.size() ? summary.cameraFromBody[i] : network.mounts[i].cameraFromBody;
+    const glm::dquat q = glm::conjugate(cameraFromBody.rotation);
+    Json mount = {{"camera", network.mounts[i].name}, {"position_on_body_m", vec(cameraFromBody.centre())},
+                  {"body_from_camera_wxyz", {q.w, q.x, q.y, q.z}}, {"free", !network.mounts[i].locked[0]}};
+    if (i < summary.mountAccuracy.size())
+      mount["offset_std_m"] = vec(summary.mountAccuracy[i].offsetStdM), mount["rotation_std_rad"] = vec(summary.mountAccuracy[i].rotationStdRad);
+    mounts.push_back(std::move(mount));
+  }
+  for (std::size_t i = 0; i < clocks.size() && i < summary.clockOffsetSecs.size(); ++i)
+    for (const TrajectoryId& id : clocks[i])
+      offsets.push_back({{"trajectory", project.findTrajectory(id)->name}, {"offset_s", summary.clockOffsetSecs[i]},
+                         {"offset_std_s", summary.clockStdSecs[i]}, {"free", network.trajectories[i].clockFree}});
+  json["mounts"] = std::move(mounts), json["clocks"] = std::move(offsets);
+}
+
 Result<Answer> refineAutomatically(const RefinePictures& wanted, const Progress& progress) {
   auto project = loadProject(wanted.project);
   if (!project) return fail(project.error());
@@ -96,7 +114,7 @@ Result<Answer> refineTogether(const RefinePictures& wanted, const Progress& prog
   if (!loaded) return fail(loaded.error());
   PictureCache pictures;
   SequenceOptions options;
-  options.alignment = wanted.options, options.everyNth = wanted.keyframes;
+  options.alignment = wanted.options, options.everyNth = wanted.keyframes, options.ties = wanted.ties;
   const auto summary = refineSequence(*project, alignmentScene(*project, loaded->data, wanted.to.value_or(alignmentTarget(*project))), pictures, options, wanted.dryRun, progress.part(0.1, 1));
   if (!summary) return fail(summary.error());
   const bool save = summary->converged && !wanted.dryRun;
@@ -110,7 +128,7 @@ Result<Answer> refineTogether(const RefinePictures& wanted, const Progress& prog
                   {"camera_centre_m", vec(f.after.centre())}, {"camera_from_world_wxyz", {q.w, q.x, q.y, q.z}},
                   {"moved_m", glm::distance(f.before.centre(), f.after.centre())}, {"turned_rad", rotationAngleBetween(f.before, f.after)}};
     if (f.refined) {
-      const AdjustedPose& pose = summary->adjustment.poses[summary->poseOf[i]];
+      const AdjustedPose& pose = summary->poseOf(i);
       frame["position_std_m"] = vec(pose.positionStdM), frame["rotation_std_rad"] = vec(pose.rotationStdRad);
     }
     frames.push_back(std::move(frame));
@@ -122,7 +140,9 @@ Result<Answer> refineTogether(const RefinePictures& wanted, const Progress& prog
                       {"rms_px", std::isfinite(g.rmsPx) ? Json(g.rmsPx) : Json(nullptr)}, {"rms_sigmas", g.rmsSigmas}});
   Answer answer;
   answer.json = {{"converged", summary->converged}, {"reason", summary->reason}, {"sigma0", summary->adjustment.sigma0},
-                 {"frames", std::move(frames)}, {"movement", std::move(alarms)}, {"groups", std::move(groups)}, {"saved", save}};
+                 {"frames", std::move(frames)}, {"movement", std::move(alarms)}, {"groups", std::move(groups)}};
+  addMotion(*project, summary->network, summary->clocks, summary->adjustment, answer.json);
+  answer.json["saved"] = save;
   answer.text = summary->report(*project);
   answer.failed = !summary->converged;
   return answer;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "app/auto_align.h"
+#include "app/rig_network.h"
 #include "cli/command.h"
 
 namespace alidade::cli {
@@ -17,7 +18,12 @@ struct RefinePictures {
   int keyframes = 1;  ///< of a sequence: every so many frames
   bool dryRun = false;
   std::optional<AlignTo> to = {};  ///< none: alignmentTarget()
+  MotionTies ties = {};            ///< of a sequence
 };
+
+/// "mounts" and "clocks" of an adjustment.
+void addMotion(const Project& project, const Network& network, const NetworkClocks& clocks, const NetworkSummary& summary,
+               nlohmann::ordered_json& json);
 
 /// `refine --auto`: each frame by itself against the scans or the designs.
 Result<Answer> refineAutomatically(const RefinePictures& wanted, const Progress& progress);

@@ -90,7 +90,7 @@ TEST(ObservationRows, WhatContradictsItselfIsRefused) {
   expectRefused("1,2,3,4,5,P,A\n1,2,,,,P,B,tie\n", "known point in one row");
   expectRefused("1,2,3,4,5,P\n", "names no frame");
   expectRefused("1,2,3,4,5,P,C\n", "C");
-  expectRefused(",,,,,Q,A,depth,1,,,,,3\n", "No row above");
+  expectRefused(",,,,,Q,A,depth,1,,,,,3\n", "No row observes");
 }
 
 }  // namespace
