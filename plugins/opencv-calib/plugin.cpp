@@ -3,6 +3,7 @@
 
 #include <QObject>
 
+#include "opencv-calib/euroc_sensor_reader.h"
 #include "opencv-calib/opencv_calibration_reader.h"
 #include "plugin_api/reader_plugin.h"
 
@@ -15,6 +16,7 @@ class OpenCvCalibrationPlugin : public QObject, public alidade::ReaderPlugin {
   std::vector<std::unique_ptr<alidade::Reader>> readers() const override {
     std::vector<std::unique_ptr<alidade::Reader>> all;
     all.push_back(std::make_unique<alidade::OpenCvCalibrationReader>());
+    all.push_back(std::make_unique<alidade::EurocSensorReader>());
     return all;
   }
 };

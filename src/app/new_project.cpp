@@ -14,6 +14,7 @@
 #include "io/reader_registry.h"
 #include "io/rig_file.h"
 #include "io/video_writer.h"
+#include "plugin_api/euroc_sensor.h"
 #include "simulate/camera_path.h"
 #include "simulate/pose_writer.h"
 
@@ -132,6 +133,17 @@ class Assembler {
     return {};
   }
 
+  /// As the rig file says it, else the camera's own calibration.
+  static Result<RigidTransform> mountingOf(const RigCamera& camera, const std::string& path) {
+    if (camera.sensorFromCamera) return *camera.sensorFromCamera;
+    const auto sensor = readEurocSensor(camera.calibration);
+    if (!sensor) return fail(sensor.error());
+    if (!*sensor)
+      return fail("Neither the rig file nor the calibration says where camera '" + camera.name + "' sits on the sensor", path,
+                  "Add sensor_from_camera or device to the rig file");
+    return (*sensor)->bodyFromSensor;
+  }
+
   /// Every camera of the rig brings its own pictures, and the sensor's trajectory moved to its place.
   Result<void> addRig(const std::string& path) {
     const auto rig = readRigFile(path);
@@ -144,9 +156,11 @@ class Assembler {
       if (calibration->cameras.size() != 1)
         return fail("The calibration describes " + std::to_string(calibration->cameras.size()) + " cameras, not one", camera.calibration,
                     "Give every camera of the rig a calibration file of its own");
+      const auto mounting = mountingOf(camera, path);
+      if (!mounting) return fail(mounting.error());
       const std::size_t before = project().frames.size();
       if (auto added = addPictures(camera.pictures); !added) return added;
-      CameraSource source{path, rigCameraSet(*trajectory, camera.sensorFromCamera, calibration->cameras.front(), rig->timeOffsetSecs), {}};
+      CameraSource source{path, rigCameraSet(*trajectory, *mounting, calibration->cameras.front(), rig->timeOffsetSecs), {}};
       for (std::size_t i = before; i < project().frames.size(); ++i) {
         Frame& frame = project().frames[i];
         if (camera.rateHz) frame.timeSecs = camera.startSecs + static_cast<double>(i - before) / *camera.rateHz;

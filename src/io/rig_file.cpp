@@ -72,13 +72,14 @@ Result<RigidTransform> mountingOf(const Json& object, const char* position, cons
   return RigidTransform{glm::normalize(quaternion), {(*p)[0], (*p)[1], (*p)[2]}};
 }
 
-Result<RigidTransform> sensorFromCameraOf(const Json& camera, const std::string& where) {
+Result<std::optional<RigidTransform>> sensorFromCameraOf(const Json& camera, const std::string& where) {
   const auto plain = camera.find("sensor_from_camera"), device = camera.find("device");
+  if (plain == camera.end() && device == camera.end() && !camera.contains("camera_axes")) return std::nullopt;
   if ((plain == camera.end()) == (device == camera.end()))
     return fail("One of 'sensor_from_camera' and 'device' is expected", where, kAdvice);
   auto mounting = plain != camera.end() ? mountingOf(*plain, "position_m", "rotation_wxyz", where)
                                         : mountingOf(*device, "camera_in_device_m", "device_from_camera_wxyz", where);
-  if (!mounting) return mounting;
+  if (!mounting) return fail(mounting.error());
   const auto axes = camera.find("camera_axes");
   if (axes != camera.end() && *axes != "opencv" && *axes != "opengl")
     return fail("'camera_axes' is neither \"opencv\" nor \"opengl\"", where, kAdvice);

@@ -17,7 +17,7 @@ struct RigCamera {
   std::string name;
   std::string pictures;     ///< folder or video, absolute
   std::string calibration;  ///< any file of cameras that describes one, absolute
-  RigidTransform sensorFromCamera;
+  std::optional<RigidTransform> sensorFromCamera;  ///< nothing: the calibration says it (EuRoC's T_BS)
   double startSecs = 0;     ///< time of the first picture, where rateHz is given
   std::optional<double> rateHz;
 };
@@ -42,7 +42,7 @@ struct Rig {
 ///
 /// `sensor_from_camera` is the plain mounting; `device` goes through the chain of geometry/device_chain.h. Camera axes
 /// are OpenCV's unless `camera_axes` says "opengl" (y up, z backwards). `time_offset_s`, `rate_hz`, `start_s` and
-/// `camera_axes` may be left out; without `rate_hz` pictures have the times of their video, or go by order.
+/// `camera_axes` may be left out, and so may the mounting where the calibration says it (EuRoC's sensor.yaml); without `rate_hz` pictures have the times of their video, or go by order.
 ///
 /// Error, with the camera and the key, where a key is missing, unknown or no number.
 Result<Rig> readRigFile(const std::string& path);

@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the Alidade authors
 // SPDX-License-Identifier: BSD-3-Clause
 
+#include "opencv-calib/euroc_sensor_reader.h"
 #include "opencv-calib/opencv_calibration_reader.h"
 
 #include <cstdint>
@@ -12,5 +13,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   // The ending decides nothing but the wording; both are in the field.
   alidade::testing::checkCameraSet(alidade::parseOpenCvCalibration(text, "fuzz.yml"), size);
   alidade::testing::checkCameraSet(alidade::parseOpenCvCalibration(text, "fuzz.xml"), size);
+  alidade::testing::checkCameraSet(alidade::parseEurocCamera(text, "sensor.yaml"), size);
   return 0;
 }

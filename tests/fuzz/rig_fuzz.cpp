@@ -13,6 +13,6 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     return 0;
   }
   for (const auto& camera : rig->cameras)
-    if (!camera.sensorFromCamera.isFinite()) std::abort();
+    if (camera.sensorFromCamera && !camera.sensorFromCamera->isFinite()) std::abort();
   return 0;
 }

@@ -38,13 +38,20 @@ TEST(RigFile, SaysWhereEveryCameraSitsOnTheSensor) {
   EXPECT_EQ(rig->cameras[0].rateHz, 15.0);
   EXPECT_EQ(rig->cameras[0].startSecs, 2.0);
   EXPECT_FALSE(rig->cameras[1].rateHz);
-  EXPECT_EQ(rig->cameras[0].sensorFromCamera.translation, glm::dvec3(0.1, 0.2, 0.3));
-  EXPECT_EQ(rig->cameras[0].sensorFromCamera.rotation, glm::dquat(0.6, 0.8, 0.0, 0.0));
+  EXPECT_EQ(rig->cameras[0].sensorFromCamera->translation, glm::dvec3(0.1, 0.2, 0.3));
+  EXPECT_EQ(rig->cameras[0].sensorFromCamera->rotation, glm::dquat(0.6, 0.8, 0.0, 0.0));
   // The device's way: through its chain, and half a turn about the camera's x for OpenGL's axes.
   const RigidTransform chained = sensorFromCamera({{0.4, 0.5, 0.6}, glm::dquat(0.6, 0.0, 0.8, 0.0)});
-  const glm::dvec3 ahead = rig->cameras[1].sensorFromCamera.rotation * glm::dvec3(0, 0, 1);
+  const glm::dvec3 ahead = rig->cameras[1].sensorFromCamera->rotation * glm::dvec3(0, 0, 1);
   EXPECT_LT(glm::length(ahead - chained.rotation * glm::dvec3(0, 0, -1)), 1e-14);
-  EXPECT_EQ(rig->cameras[1].sensorFromCamera.translation, glm::dvec3(0.4, 0.5, 0.6));
+  EXPECT_EQ(rig->cameras[1].sensorFromCamera->translation, glm::dvec3(0.4, 0.5, 0.6));
+}
+
+TEST(RigFile, ACalibrationMayBeLeftToSayWhereItsCameraSits) {
+  const auto rig = parseRig(R"({ "alidade_rig": 1, "trajectory": "t.csv", "cameras": [
+    { "name": "cam0", "pictures": "cam0/data", "calibration": "cam0/sensor.yaml", "rate_hz": 20 } ] })", "/data/rig.json");
+  ASSERT_TRUE(rig) << rig.error().text();
+  EXPECT_FALSE(rig->cameras[0].sensorFromCamera);
 }
 
 TEST(RigFile, WhatIsWrongIsNamedWithItsCamera) {
