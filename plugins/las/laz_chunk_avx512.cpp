@@ -23,6 +23,7 @@
 #include <immintrin.h>
 
 #define ALIDADE_LAZ_SET avx512
+#define ALIDADE_LAZ_AVX512  // the compiler's own macros do not follow the pragma
 #pragma GCC push_options
 #pragma GCC target("avx512f,avx512bw,avx512vl,avx512dq,bmi,bmi2,lzcnt,popcnt,movbe")
 #include "las/laz_chunk_body.h"

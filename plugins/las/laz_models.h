@@ -23,11 +23,11 @@ inline namespace ALIDADE_LAZ_SET {
 
 /// How many of 16 rising numbers are at most `limit`, which is below 2^16 - 1.
 [[gnu::always_inline]] inline unsigned countUpTo(const std::uint16_t* sixteen, std::uint32_t limit) {
-#if defined(__AVX512BW__) && defined(__AVX512VL__)
+#if defined(ALIDADE_LAZ_AVX512)
   const __m256i wanted = _mm256_set1_epi16(static_cast<short>(limit));
   const __m256i numbers = _mm256_load_si256(reinterpret_cast<const __m256i*>(sixteen));
   return static_cast<unsigned>(__builtin_popcount(_mm256_cmple_epu16_mask(numbers, wanted)));
-#elif defined(__AVX2__)
+#elif defined(ALIDADE_LAZ_AVX2)
   const __m256i wanted = _mm256_set1_epi16(static_cast<short>(limit));
   const __m256i numbers = _mm256_load_si256(reinterpret_cast<const __m256i*>(sixteen));
   const __m256i atMost = _mm256_cmpeq_epi16(_mm256_max_epu16(numbers, wanted), wanted);
