@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <tuple>
 #include <utility>
 
 namespace alidade {
@@ -13,6 +14,11 @@ namespace {
 
 PointView viewOf(const ViewCamera& camera, std::uint64_t budget) {
   return {camera.pinhole(), camera.cameraFromWorld(), budget, 0};
+}
+
+/// What of the settings the points are drawn by.
+auto pointsOf(const DisplaySettings& d) {
+  return std::tie(d.density, d.densityLaw, d.pointsPerSquareMetre, d.levelThreshold, d.pointSize, d.roundPoints, d.points);
 }
 
 /// A cone about the cursor's ray.
@@ -48,13 +54,15 @@ void CloudLayer::set(const std::vector<ScanPoints>& clouds) {
 }
 
 void CloudLayer::setDisplay(const DisplaySettings& display) {
+  if (pointsOf(display) == pointsOf(m_display)) return;
   m_display = display;
   m_chosenFor.reset();
 }
 
 void CloudLayer::setPixelRatio(double ratio) {
+  if (ratio == m_ratio) return;
   m_ratio = ratio;
-  m_chosenFor.reset();
+  m_drawnFor.reset();
 }
 
 void CloudLayer::choose(const View& view) {
