@@ -11,10 +11,12 @@
 #include <QMenuBar>
 #include <QMessageBox>
 #include <QMimeData>
+#include <QScrollArea>
 #include <QSettings>
 #include <QSplitter>
 #include <QStackedWidget>
 #include <QStatusBar>
+#include <QStyle>
 #include <QToolBar>
 #include <QToolButton>
 #include <QVBoxLayout>
@@ -43,6 +45,18 @@
 namespace alidade {
 
 namespace {
+
+/// A panel that is higher than the screen scrolls; it must not make the window so high.
+QWidget* scrolling(QWidget* content) {
+  if (qobject_cast<QAbstractScrollArea*>(content)) return content;
+  auto* area = new QScrollArea;
+  area->setWidget(content);
+  area->setWidgetResizable(true);
+  area->setFrameShape(QFrame::NoFrame);
+  area->setHorizontalScrollBarPolicy(Qt::ScrollBarAlwaysOff);
+  area->setMinimumWidth(content->minimumSizeHint().width() + area->style()->pixelMetric(QStyle::PM_ScrollBarExtent));
+  return area;
+}
 
 constexpr int kLayoutVersion = 3;
 
@@ -169,7 +183,7 @@ QDockWidget* MainWindow::dock(const QString& title, const QString& name, QWidget
                               Qt::DockWidgetArea area) {
   auto* dock = new QDockWidget(title, this);
   dock->setObjectName(name);
-  dock->setWidget(content);
+  dock->setWidget(scrolling(content));
   addDockWidget(area, dock);
   m_docks << dock;
   return dock;

@@ -142,6 +142,17 @@ Result<std::vector<PartManifest>> prepare(const std::string& path, bool append) 
   return std::vector<PartManifest>{};
 }
 
+/// A scan that is there already would double its points.
+Result<void> checkNew(std::span<const PartManifest> parts, std::span<const ScanSource> scans) {
+  for (std::size_t i = 0; i < scans.size(); ++i) {
+    const std::string& identity = scans[i].identity;
+    const auto same = [&](const auto& other) { return !identity.empty() && other.identity == identity; };
+    if (std::ranges::any_of(parts, same)) return fail("The point store holds this scan already", scans[i].name, "Leave it out");
+    if (std::ranges::any_of(scans.first(i), same)) return fail("This scan is named twice", scans[i].name, "Name it once");
+  }
+  return {};
+}
+
 /// Nodes, tables' checksum and manifest beside the columns; then the folder gets its final name.
 Result<PartManifest> finishPart(FileSink& sink, const PartTree& tree, const ScanSource& scan, std::uint64_t purpose,
                                 const std::string& store, std::size_t number) {
@@ -231,10 +242,13 @@ Result<IndexReport> indexScans(std::span<const ScanSource> scans, const std::str
     const auto start = Clock::now();
     if (scans.empty()) return fail("There is no scan to index", storePath, "Name at least one");
     if (progress.cancelled()) return fail(cancelledError());
-    auto parts = prepare(storePath, options.append);
-    if (!parts) return fail(parts.error());
+    if (auto made = prepare(storePath, options.append); !made) return fail(made.error());
     const auto lock = FolderLock::take(storePath);
     if (!lock) return fail(lock.error());
+    // Again, now that nobody else can change it.
+    auto parts = prepare(storePath, options.append);
+    if (!parts) return fail(parts.error());
+    if (auto fresh = checkNew(*parts, scans); !fresh) return fail(fresh.error());
     double whole = 0, before = 0;
     for (const ScanSource& scan : scans) whole += static_cast<double>(scan.info.pointCount) + 1;
     IndexReport report;

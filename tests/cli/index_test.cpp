@@ -35,6 +35,9 @@ TEST(Index, MakesAStoreAppendsToItAndSaysWhatItHolds) {
   const auto grown = alidadeCli("index --json --append --levels random --seed 7 " + quoted(high) + " -o " + store);
   ASSERT_EQ(grown.exitCode, 0) << grown.errors;
   EXPECT_EQ(grown.json()["parts"], 2);
+  const auto twice = alidadeCli("index --append " + quoted(high) + " -o " + store);
+  EXPECT_EQ(twice.exitCode, 1);
+  EXPECT_NE(twice.errors.find("holds this scan already"), std::string::npos) << twice.errors;
   const auto info = alidadeCli("info --json " + store);
   ASSERT_EQ(info.exitCode, 0) << info.errors;
   const auto file = info.json()["files"][0];
@@ -57,6 +60,7 @@ TEST(Index, RefusesWhatItCannotDo) {
   EXPECT_EQ(alidadeCli("index " + quoted(scan) + " -o " + store + " --memory 12Q").exitCode, 2);
   EXPECT_EQ(alidadeCli("index " + quoted(scan) + " -o " + store + " --levels odd").exitCode, 2);
   EXPECT_EQ(alidadeCli("index " + quoted(scan)).exitCode, 2);
+  EXPECT_EQ(alidadeCli("index " + quoted(scan) + " " + quoted(scan) + " -o " + quoted(scratch() / "named_twice")).exitCode, 1);
   EXPECT_EQ(alidadeCli("index --append " + quoted(scan) + " -o " + store).exitCode, 1);
   EXPECT_EQ(alidadeCli("index " + quoted(scratch() / "missing.las") + " -o " + store).exitCode, 1);
   EXPECT_FALSE(std::filesystem::exists(scratch() / "refused.alidade-points"));

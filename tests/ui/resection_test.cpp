@@ -179,6 +179,11 @@ TEST_F(ResectionWindow, AnEdgeOfTheDesignIsObservedInSeveralPlaces) {
   EXPECT_NEAR(glm::length(*residual), 3.0, 1.6) << "the distance across the edge, whatever the place along it";
 }
 
+TEST_F(ResectionWindow, ThePanelLeavesTheWindowSmallEnoughForAnyScreen) {
+  EXPECT_LE(window->minimumSizeHint().height(), 800);
+  EXPECT_LE(window->minimumSizeHint().width(), 1280);
+}
+
 TEST_F(ResectionWindow, TheTableSortsByResidualAndHoldsOut) {
   const std::size_t observed = observeControlPoints([](std::size_t i) { return glm::dvec2(i == 2 ? 9 : 0, 0.5 * (i % 2)); });
   ASSERT_GE(observed, 6u);
