@@ -20,6 +20,7 @@ find_package(GTest REQUIRED)
 find_package(benchmark REQUIRED)
 find_package(PNG REQUIRED)
 find_package(CURL REQUIRED)
+find_package(PROJ REQUIRED)
 find_package(pugixml REQUIRED)
 
 # Never GUISupportQt: Debian's is built on Qt 5.

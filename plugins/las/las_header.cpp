@@ -199,6 +199,20 @@ std::string LasHeader::details() const {
   return text;
 }
 
+ScanNotes LasHeader::notes() const {
+  ScanNotes notes;
+  for (const LasExtraBytes& each : extras)
+    if (!each.meaning.empty()) {
+      notes.columns.push_back(each.meaning);
+      notes.columns.back().column = each.name;
+    }
+  if (hasGpsTime()) notes.gpsTime = (globalEncoding & 1) != 0 ? GpsTimeKind::Standard : GpsTimeKind::OfWeek;
+  notes.records = foreignRecords;
+  notes.degrees = degrees;
+  for (const ImportWarning& warning : warnings) notes.warnings.push_back(fmt::format("{} ({})", warning.what, warning.where));
+  return notes;
+}
+
 Result<LasHeader> readLasHeader(const ByteSource& file) {
   std::array<std::byte, kHeaderSize14> block{};
   const auto got = file.readSome(0, block);

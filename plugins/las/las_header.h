@@ -15,6 +15,7 @@
 #include "las/copc_info.h"
 #include "las/laz_layout.h"
 #include "plugin_api/reader.h"
+#include "survey/scan_notes.h"
 
 namespace alidade {
 
@@ -36,6 +37,7 @@ struct LasExtraBytes {
   std::uint32_t offset = 0;  ///< within the point record, bytes
   std::uint32_t size = 0;    ///< bytes
   bool scaled = false;     ///< has a scale or an offset of its own
+  ColumnMeaning meaning;   ///< of the column of this name
 };
 
 /// A scanner's set-up as our own record gives it (las_stations.h).
@@ -63,9 +65,11 @@ struct LasHeader {
   std::optional<LazLayout> laz;  ///< where the points are compressed
   std::optional<CopcInfo> copc;  ///< where the chunks are the nodes of an octree
 
-  std::string crs;          ///< WKT, "EPSG:n" or empty
+  std::string crs;          ///< WKT, "EPSG:n", "EPSG:n+m" (m: the heights) or empty
   std::string crsNote;      ///< vertical system and the like, for `details`
-  std::vector<LasExtraBytes> extras;
+  bool degrees = false;     ///< x and y
+  std::vector<LasExtraBytes> extras;  ///< their names are no field's and each another's; where the file's were not, with a warning
+  std::vector<ForeignRecord> foreignRecords;
   std::vector<LasStation> stations;
   std::vector<ImportWarning> warnings;
 
@@ -81,6 +85,7 @@ struct LasHeader {
   std::uint32_t wavePacketOffset() const;
   const LasExtraBytes* extra(const std::string& lowerCaseName) const;
   std::string details() const;
+  ScanNotes notes() const;
 };
 
 /// Bytes of a point record of this format without extra bytes; 0 for a format that is unknown.

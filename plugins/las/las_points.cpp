@@ -158,18 +158,21 @@ std::uint32_t undescribedBytes(const LasHeader& header) {
   return header.recordLength - described;
 }
 
-std::string nameOf(const LasExtraBytes& extra) {
-  return extra.name.empty() ? "extra_bytes" : extra.name;
+/// Of the bytes behind the described ones: a name that these have not.
+std::string undescribedName(const LasHeader& header) {
+  std::string name = "extra_bytes";
+  for (int i = 2; header.extra(name) != nullptr; ++i) name = "extra_bytes_" + std::to_string(i);
+  return name;
 }
 
 void addExtras(const LasHeader& header, const OwnColumns& own, std::vector<RecordField>& fields) {
   for (const LasExtraBytes& extra : header.extras) {
     if (own.takes(extra) || extra.size == 0) continue;
     const int components = extra.type == 0 ? static_cast<int>(extra.size) : extra.components;
-    fields.push_back({nameOf(extra), kTypes[extra.type], components, true, extra.offset, {}});
+    fields.push_back({extra.name, kTypes[extra.type], components, true, extra.offset, {}});
   }
   if (const std::uint32_t rest = undescribedBytes(header); rest > 0)
-    fields.push_back({"extra_bytes", NumberType::U8, static_cast<int>(rest), true, header.recordLength - rest, {}});
+    fields.push_back({undescribedName(header), NumberType::U8, static_cast<int>(rest), true, header.recordLength - rest, {}});
 }
 
 /// The station of each point by the point source ID that the station's record names; none for the
@@ -267,8 +270,8 @@ std::vector<std::string> lasAttributes(const LasHeader& header) {
   if (header.hasNir()) names.push_back("nir");
   if (header.hasWaveforms()) names.push_back("wave_packet");
   for (const auto& extra : header.extras)
-    if (extra.size > 0) names.push_back(nameOf(extra));
-  if (undescribedBytes(header) > 0) names.push_back("extra_bytes");
+    if (extra.size > 0) names.push_back(extra.name);
+  if (undescribedBytes(header) > 0) names.push_back(undescribedName(header));
   return names;
 }
 

@@ -18,7 +18,7 @@ std::uint16_t largestLasColour(const LasHeader& header, const std::byte* records
 ///   7 edge of flight line. The older formats' flags are put where the formats 6-10 have them.
 /// - "scan_angle_rank" i8, degrees (formats 0-5); "scan_angle" i16, 0.006 degrees (6-10).
 /// - "user_data" u8; "nir" u16 (8, 10); "wave_packet" 29 u8 (4, 5, 9, 10).
-/// - Every extra byte by its own name; those that no record describes as "extra_bytes" u8.
+/// - Every extra byte by its own name (LasHeader::extras); those that no record describes as "extra_bytes" u8.
 ///
 /// Extra bytes named "row", "column" and "scanner" (any case, unscaled integers of up to 32, 32 and 16
 /// bits) are left out: they are columns of other types.

@@ -118,7 +118,7 @@ struct OpenedFile {
     const auto unshifted = coloursAreUnshifted(**file, *header, progress);
     if (!unshifted) return fail(unshifted.error());
     if (*unshifted)
-      header->warnings.push_back({"Colours are stored as 8-bit numbers, against the standard; they are used as such",
+      header->warnings.push_back({"Colours are stored as 8-bit numbers, against the standard; they are used as such, and written as 16-bit numbers",
                                   "points"});
     return OpenedFile{std::move(*file), std::move(*header), *unshifted};
   }
@@ -152,6 +152,14 @@ Result<ScanInfo> LasReader::inspect(const std::string& path) const {
   for (const LasStation& each : header->stations) info.stations.push_back(each.station);
   info.details = header->details();
   return info;
+}
+
+Result<ScanNotes> LasReader::notes(const std::string& path) const {
+  const auto file = ByteSource::open(path);
+  if (!file) return fail(file.error());
+  const auto header = readLasHeader(**file);
+  if (!header) return fail(header.error());
+  return header->notes();
 }
 
 Result<std::vector<ImportWarning>> LasReader::read(const std::string& path,

@@ -21,6 +21,7 @@ class LasReader : public ScanReader {
   ReaderDescription description() const override;
   int sniff(const FileProbe& probe) const override;
   Result<ScanInfo> inspect(const std::string& path) const override;
+  Result<ScanNotes> notes(const std::string& path) const override;
   Result<std::vector<ImportWarning>> read(const std::string& path,
                                           const BatchSink& sink,
                                           const Progress& progress) const override;

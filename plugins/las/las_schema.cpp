@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -13,10 +14,13 @@ namespace alidade {
 
 namespace {
 
-/// Metres, where the source has no scale of its own.
-constexpr double kDefaultScale = 0.0001;
+/// Metres, where the source has neither a scale nor bounds; and the finest that is chosen where it has bounds.
+constexpr double kDefaultScale = 0.0001, kFinestScale = 1e-9;
 /// Degrees a unit of the scan angle of the formats 6-10.
 constexpr double kAngleUnit = 0.006;
+/// Characters of the name of extra bytes.
+constexpr std::size_t kLongestName = 32;
+constexpr std::array kNormals = {"NormalX", "NormalY", "NormalZ"};
 
 template <class T>
 void put(std::byte* at, T value) {
@@ -33,14 +37,47 @@ bool isField(const ExtraColumn& column, const char* name, NumberType type, int c
   return column.name == name && column.type == type && column.components == components;
 }
 
-/// Columns that have a place in the record itself.
-bool hasField(const ExtraColumn& column, int format) {
+/// Columns that have a place in the record itself: the first of their name.
+bool hasField(const ExtraColumn& column, int ordinal, int format) {
+  if (ordinal > 0) return false;
   if (isField(column, "scan_flags", NumberType::U8) || isField(column, "user_data", NumberType::U8)) return true;
   if (isField(column, "scan_angle_rank", NumberType::I8)) return true;
   if (isField(column, "scan_angle", NumberType::I16)) return format >= 6;
   if (isField(column, "nir", NumberType::U16)) return format == 8 || format == 10;
   if (isField(column, "wave_packet", NumberType::U8, 29)) return format == 4 || format == 5 || format >= 9;
   return false;
+}
+
+/// Names that a reader would take for the record's own fields.
+bool isFieldName(const std::string& name) {
+  constexpr std::array names = {"rgb", "intensity", "classification", "return_number", "return_count", "number_of_returns", "gps_time",
+                                "point_source", "point_source_id", "scan_flags", "scan_angle", "scan_angle_rank", "user_data", "nir",
+                                "wave_packet", "scanner", "row", "column"};
+  return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+/// Calls visit(column, ordinal) for every ExtraColumn of a batch, numbered among those of its name; stops at its first error.
+template <class Visit>
+Result<void> forEachExtra(const PointBatch& batch, const Visit& visit) {
+  for (std::size_t i = 0; i < batch.extra.size(); ++i) {
+    const ExtraColumn& column = batch.extra[i];
+    if (column.components <= 0) continue;
+    int ordinal = 0;
+    for (std::size_t k = 0; k < i; ++k) ordinal += batch.extra[k].components > 0 && batch.extra[k].name == column.name;
+    if (Result<void> done = visit(column, ordinal); !done) return done;
+  }
+  return {};
+}
+
+/// The finest power of ten that reaches twice as far as the bounds in 32 bits, an axis as the others.
+double finestScale(const Bounds& bounds) {
+  const glm::dvec3 size = bounds.size();
+  const double most = std::max({size.x, size.y, size.z});
+  if (bounds.empty() || !std::isfinite(most)) return kDefaultScale;
+  constexpr double kReach = 2147483647.0;  // steps to either side of the middle
+  int exponent = -9;
+  while (exponent < 3 && most > kReach * std::pow(10.0, exponent)) ++exponent;
+  return exponent == -9 ? kFinestScale : std::pow(10.0, exponent);
 }
 
 tl::unexpected<Error> doesNotFit(const std::string& what, std::size_t point, const std::string& path) {
@@ -50,18 +87,41 @@ tl::unexpected<Error> doesNotFit(const std::string& what, std::size_t point, con
 
 }  // namespace
 
-void LasSchema::addExtra(const std::string& name, NumberType type, int components) {
-  m_extras.push_back({name, type, components, static_cast<std::uint32_t>(m_recordLength)});
-  m_recordLength += m_extras.back().size();
+void LasSchema::addOwn(const char* name, NumberType type) {
+  addExtra({Origin::Own, name, 0, name, type, 1, 0, {}});
 }
 
-const LasSchema::Extra* LasSchema::find(const std::string& name) const {
+void LasSchema::addUser(const ExtraColumn& column, int ordinal, const ScanNotes& notes) {
+  Extra extra{Origin::User, column.name, ordinal, column.name.substr(0, kLongestName), column.type, column.components, 0, {}};
+  const auto taken = [&](const std::string& name) {
+    return isFieldName(name) || std::any_of(m_extras.begin(), m_extras.end(), [&](const Extra& each) { return each.name == name; });
+  };
+  for (int i = std::max(2, ordinal + 1); taken(extra.name); ++i) {
+    const std::string number = fmt::format("_{}", i);
+    extra.name = column.name.substr(0, kLongestName - number.size()) + number;
+  }
+  if (extra.name != column.name)
+    m_remarks.push_back(fmt::format("The column \"{}\" is called \"{}\": its name {}", column.name, extra.name,
+                                    column.name.size() > kLongestName ? "is too long" : "is another column's"));
+  for (const ColumnMeaning& meaning : notes.columns)
+    if (ordinal == 0 && meaning.column == column.name) extra.meaning = meaning;
+  addExtra(std::move(extra));
+}
+
+void LasSchema::addExtra(Extra extra) {
+  extra.offset = static_cast<std::uint32_t>(m_recordLength);
+  m_recordLength += extra.size();
+  m_extras.push_back(std::move(extra));
+}
+
+const LasSchema::Extra* LasSchema::find(Origin origin, const std::string& column, int ordinal) const {
   for (const Extra& extra : m_extras)
-    if (extra.name == name) return &extra;
+    if (extra.origin == origin && extra.ordinal == ordinal && extra.column == column) return &extra;
   return nullptr;
 }
 
-Result<LasSchema> LasSchema::of(const PointBatch& batch, const ScanInfo& info, bool tree, const std::string& path) {
+Result<LasSchema> LasSchema::of(const PointBatch& batch, const ScanInfo& info, const ScanNotes& notes, bool tree,
+                                const std::string& path) {
   LasSchema schema;
   const bool colour = !batch.rgb.empty(), time = !batch.gpsTime.empty();
   const bool infrared = columnOf(batch, "nir") != nullptr, wave = !tree && columnOf(batch, "wave_packet") != nullptr;
@@ -71,21 +131,22 @@ Result<LasSchema> LasSchema::of(const PointBatch& batch, const ScanInfo& info, b
   else
     schema.m_format = wave ? (colour || infrared ? 10 : 9) : infrared ? 8 : colour ? 7 : 6;
   schema.m_recordLength = lasRecordLength(schema.m_format);
-  schema.m_scale = glm::all(glm::greaterThan(info.scale, glm::dvec3(0))) ? info.scale : glm::dvec3(kDefaultScale);
+  schema.m_scale = glm::all(glm::greaterThan(info.scale, glm::dvec3(0))) ? info.scale : glm::dvec3(finestScale(info.bounds));
   schema.m_offset = info.offset;
   if (schema.m_scale != info.scale)
     schema.m_offset = glm::round(!info.bounds.empty() ? info.bounds.centre() : batch.size() ? batch.position[0] : glm::dvec3(0));
 
-  if (!batch.scanner.empty()) schema.addExtra("scanner", NumberType::U16, 1);
+  if (!batch.scanner.empty()) schema.addOwn("scanner", NumberType::U16);
   if (!batch.row.empty() && !batch.column.empty()) {
-    schema.addExtra("row", NumberType::U32, 1);
-    schema.addExtra("column", NumberType::U32, 1);
+    schema.addOwn("row", NumberType::U32);
+    schema.addOwn("column", NumberType::U32);
   }
   if (!batch.normal.empty())
-    for (const char* name : {"NormalX", "NormalY", "NormalZ"}) schema.addExtra(name, NumberType::F32, 1);
-  for (const ExtraColumn& column : batch.extra)
-    if (!hasField(column, schema.m_format) && column.components > 0)
-      schema.addExtra(column.name, column.type, column.components);
+    for (const char* name : kNormals) schema.addOwn(name, NumberType::F32);
+  (void)forEachExtra(batch, [&](const ExtraColumn& column, int ordinal) -> Result<void> {
+    if (!hasField(column, ordinal, schema.m_format)) schema.addUser(column, ordinal, notes);
+    return {};
+  });
   if (schema.m_recordLength > 4096)
     return fail(fmt::format("The columns take {} bytes a point, more than 4096", schema.m_recordLength), path,
                 "Leave out extra columns");
@@ -93,25 +154,32 @@ Result<LasSchema> LasSchema::of(const PointBatch& batch, const ScanInfo& info, b
 }
 
 std::vector<std::byte> LasSchema::extraBytesRecord() const {
-  // Entries of 192 bytes (LAS 1.4 R15, table 24): type at 2, options at 3, name at 4. Types 1-10, and in the
-  // deprecated 11-30 two or three of them; anything else is told by its size alone.
+  // Entries of 192 bytes (LAS 1.4 R15, table 24): type at 2, options at 3, name at 4, what the numbers mean from 40 on.
+  // Types 1-10, and in the deprecated 11-30 two or three of them; anything else is told by its size alone.
   constexpr std::array<std::uint8_t, 10> codes = {2, 1, 4, 3, 6, 5, 8, 7, 9, 10};
   std::vector<std::byte> record;
-  const auto add = [&](const std::string& name, int type, std::size_t options) {
+  const auto add = [&](const std::string& name, int type, std::size_t options, const ColumnMeaning& meaning) {
     const std::size_t at = record.size();
     record.resize(at + 192);
     record[at + 2] = static_cast<std::byte>(type);
     record[at + 3] = static_cast<std::byte>(options);
-    std::memcpy(record.data() + at + 4, name.data(), std::min<std::size_t>(name.size(), 32));
+    std::memcpy(record.data() + at + 4, name.data(), std::min(name.size(), kLongestName));
+    std::memcpy(record.data() + at + 160, meaning.description.data(), std::min<std::size_t>(meaning.description.size(), 32));
+    if (type == 0) return;
+    const auto triple = [&](int bit, std::size_t field, const auto& values) {
+      if ((meaning.given >> bit & 1) != 0) std::memcpy(record.data() + at + field, &values, 24);
+    };
+    triple(0, 40, meaning.noData), triple(1, 64, meaning.least), triple(2, 88, meaning.largest);
+    triple(3, 112, meaning.scale), triple(4, 136, meaning.offset);
   };
   for (const Extra& extra : m_extras) {
     if (extra.components <= 3) {
-      add(extra.name, codes[static_cast<std::size_t>(extra.type)] + 10 * (extra.components - 1), 0);
+      add(extra.name, codes[static_cast<std::size_t>(extra.type)] + 10 * (extra.components - 1), extra.meaning.given & 0x1Fu, extra.meaning);
       continue;
     }
     for (std::size_t left = extra.size(); left > 0;) {
       const std::size_t part = std::min<std::size_t>(left, 255);
-      add(extra.name, 0, part);
+      add(extra.name, 0, part, extra.meaning);
       left -= part;
     }
   }
@@ -125,6 +193,7 @@ void LasSchema::Totals::add(const Totals& other) {
   firstTime = count == 0 ? other.firstTime : std::min(firstTime, other.firstTime);
   lastTime = count == 0 ? other.lastTime : std::max(lastTime, other.lastTime);
   for (std::size_t i = 0; i < byReturn.size(); ++i) byReturn[i] += other.byReturn[i];
+  rounding = std::max(rounding, other.rounding);
   count += other.count;
 }
 
@@ -136,16 +205,16 @@ Result<void> LasSchema::checkColumns(const PointBatch& batch, const std::string&
   const bool colours = m_format == 2 || m_format == 3 || m_format == 5 || m_format == 7 || m_format == 8 || m_format == 10;
   if (!batch.rgb.empty() && !colours) return missing("colours");
   if (!batch.gpsTime.empty() && (m_format == 0 || m_format == 2)) return missing("GPS times");
-  if (!batch.scanner.empty() && !find("scanner")) return missing("stations");
-  if (!batch.row.empty() && !batch.column.empty() && !find("row")) return missing("rows and columns");
-  if (!batch.normal.empty() && !find("NormalX")) return missing("normals");
-  for (const ExtraColumn& column : batch.extra) {
-    if (hasField(column, m_format) || column.components == 0) continue;
-    const Extra* extra = find(column.name);
+  if (!batch.scanner.empty() && !find(Origin::Own, "scanner")) return missing("stations");
+  if (!batch.row.empty() && !batch.column.empty() && !find(Origin::Own, "row")) return missing("rows and columns");
+  if (!batch.normal.empty() && !find(Origin::Own, "NormalX")) return missing("normals");
+  return forEachExtra(batch, [&](const ExtraColumn& column, int ordinal) -> Result<void> {
+    if (hasField(column, ordinal, m_format)) return {};
+    const Extra* extra = find(Origin::User, column.name, ordinal);
     if (!extra || extra->type != column.type || extra->components != column.components)
       return missing(fmt::format("the column \"{}\"", column.name));
-  }
-  return {};
+    return {};
+  });
 }
 
 Result<void> LasSchema::encodePositions(const PointBatch& batch, const std::string& path, std::byte* at,
@@ -158,6 +227,12 @@ Result<void> LasSchema::encodePositions(const PointBatch& batch, const std::stri
                               batch.position[i].x, batch.position[i].y, batch.position[i].z, m_scale.x),
                   path, "Write with a larger scale, or to several files");
     const glm::ivec3 number(steps);
+    const glm::dvec3 change = glm::abs(m_scale * steps + m_offset - batch.position[i]);
+    // Doubles of the same decimal number differ by less, however it was put together.
+    constexpr double kSame = 4 * std::numeric_limits<double>::epsilon();
+    const glm::dvec3 same = kSame * (glm::abs(batch.position[i]) + glm::abs(m_offset));
+    for (int axis = 0; axis < 3; ++axis)
+      if (change[axis] > same[axis]) totals.rounding = std::max(totals.rounding, change[axis]);
     for (int axis = 0; axis < 3; ++axis) put(at + 4 * axis, static_cast<std::int32_t>(number[axis]));
     totals.low = i == 0 ? number : glm::min(totals.low, number);
     totals.high = i == 0 ? number : glm::max(totals.high, number);
@@ -205,13 +280,13 @@ Result<void> LasSchema::encodeFields(const PointBatch& batch, const std::string&
   return {};
 }
 
-Result<void> LasSchema::encodeExtraColumn(const ExtraColumn& column, std::size_t count, const std::string& path,
+Result<void> LasSchema::encodeExtraColumn(const ExtraColumn& column, int ordinal, std::size_t count, const std::string& path,
                                           std::byte* at) const {
   const auto each = [&](const auto& store) {
     for (std::size_t i = 0; i < count; ++i) store(at + i * m_recordLength, column.data.data() + i * column.bytesPerPoint());
   };
-  if (!hasField(column, m_format)) {
-    const Extra* extra = find(column.name);
+  if (!hasField(column, ordinal, m_format)) {
+    const Extra* extra = find(Origin::User, column.name, ordinal);
     each([&](std::byte* record, const std::byte* value) { std::memcpy(record + extra->offset, value, extra->size()); });
   } else if (column.name == "scan_flags" && wide()) {
     each([](std::byte* record, const std::byte* value) { record[15] = *value; });
@@ -254,7 +329,7 @@ Result<void> LasSchema::encode(const PointBatch& batch, const std::string& path,
   if (auto ok = encodePositions(batch, path, at, more); !ok) return ok;
   if (auto ok = encodeFields(batch, path, at, more); !ok) return ok;
   const auto column = [&](const char* name, const auto& values) {
-    const Extra* extra = find(name);
+    const Extra* extra = find(Origin::Own, name);
     if (!extra || values.empty()) return;
     for (std::size_t i = 0; i < count; ++i) put(at + i * m_recordLength + extra->offset, values[i]);
   };
@@ -262,12 +337,11 @@ Result<void> LasSchema::encode(const PointBatch& batch, const std::string& path,
   column("row", batch.row);
   column("column", batch.column);
   for (int axis = 0; axis < 3 && !batch.normal.empty(); ++axis) {
-    const Extra* extra = find(std::string("Normal") + "XYZ"[axis]);
+    const Extra* extra = find(Origin::Own, kNormals[static_cast<std::size_t>(axis)]);
     for (std::size_t i = 0; i < count; ++i) put(at + i * m_recordLength + extra->offset, batch.normal[i][axis]);
   }
-  for (const ExtraColumn& extra : batch.extra)
-    if (extra.components > 0)
-      if (auto ok = encodeExtraColumn(extra, count, path, at); !ok) return ok;
+  const auto encodeExtra = [&](const ExtraColumn& extra, int ordinal) { return encodeExtraColumn(extra, ordinal, count, path, at); };
+  if (auto ok = forEachExtra(batch, encodeExtra); !ok) return ok;
   totals.add(more);
   return {};
 }

@@ -6,6 +6,9 @@
 #include <algorithm>
 #include <charconv>
 
+#include <fmt/format.h>
+
+#include "las/las_crs.h"
 #include "las/las_stations.h"
 
 namespace alidade {
@@ -31,21 +34,31 @@ std::vector<std::byte> terminated(const std::string& text) {
   return payload;
 }
 
-/// The number of "EPSG:n"; 0 for anything else.
-int epsgOf(const std::string& crs) {
-  int code = 0;
-  if (crs.starts_with("EPSG:")) std::from_chars(crs.data() + 5, crs.data() + crs.size(), code);
-  return code > 0 && code < 32767 ? code : 0;
-}
+/// The numbers of "EPSG:n" or "EPSG:n+m"; 0 for anything else.
+struct EpsgCodes {
+  explicit EpsgCodes(const std::string& crs) {
+    if (!crs.starts_with("EPSG:")) return;
+    const auto read = [&](std::size_t from, int& code) {
+      const auto [end, error] = std::from_chars(crs.data() + from, crs.data() + crs.size(), code);
+      if (error != std::errc() || code <= 0 || code >= 32767) code = 0;
+      return static_cast<std::size_t>(end - crs.data());
+    };
+    const std::size_t end = read(5, plane);
+    if (end < crs.size() && crs[end] == '+') read(end + 1, heights);
+  }
+  int plane = 0, heights = 0;
+};
 
 /// A GeoTIFF key directory that names the system (GeoTIFF 1.0, 2.4).
-std::vector<std::byte> geoKeysOf(int epsg) {
-  const bool geographic = epsg >= 4000 && epsg < 5000;
-  const std::uint16_t keys[] = {1, 1, 0, 2,
-                                1024, 0, 1, static_cast<std::uint16_t>(geographic ? 2 : 1),
-                                static_cast<std::uint16_t>(geographic ? 2048 : 3072), 0, 1, static_cast<std::uint16_t>(epsg)};
-  const auto* bytes = reinterpret_cast<const std::byte*>(keys);
-  return {bytes, bytes + sizeof keys};
+std::vector<std::byte> geoKeysOf(const EpsgCodes& epsg) {
+  const bool geographic = epsg.plane >= 4000 && epsg.plane < 5000;
+  const auto code = [](int n) { return static_cast<std::uint16_t>(n); };
+  std::vector<std::uint16_t> keys = {1, 1, 0, code(epsg.heights != 0 ? 3 : 2),
+                                     1024, 0, 1, code(geographic ? 2 : 1),
+                                     code(geographic ? 2048 : 3072), 0, 1, code(epsg.plane)};
+  if (epsg.heights != 0) keys.insert(keys.end(), {4096, 0, 1, code(epsg.heights)});
+  const auto* bytes = reinterpret_cast<const std::byte*>(keys.data());
+  return {bytes, bytes + keys.size() * sizeof(std::uint16_t)};
 }
 
 void appendRecord(std::vector<std::byte>& bytes, const LasRecord& record, bool extended) {
@@ -71,12 +84,20 @@ LasFileFrame LasFileFrame::of(const LasSchema& schema, const ScanWriteOptions& o
   };
   if (auto extra = schema.extraBytesRecord(); !extra.empty()) add({"LASF_Spec", 4, "Extra bytes", std::move(extra)});
   const std::string& crs = options.info.crs;
-  if (const int epsg = epsgOf(crs); epsg != 0) {
-    add({"LASF_Projection", 34735, "GeoTIFF keys", geoKeysOf(epsg)});
-  } else if (!crs.empty()) {
-    add({"LASF_Projection", 2112, "OGC coordinate system WKT", terminated(crs)});
+  const EpsgCodes epsg(crs);
+  // The formats 6-10 want WKT (LAS 1.4 R15, 2.5), the others have had GeoTIFF keys from the start.
+  const std::string wkt = epsg.plane == 0 ? crs : schema.pointFormat() >= 6 ? wktOfEpsg(crs) : std::string();
+  if (!wkt.empty()) {
+    add({"LASF_Projection", 2112, "OGC coordinate system WKT", terminated(wkt)});
     frame.wkt = true;
+  } else if (epsg.plane != 0) {
+    add({"LASF_Projection", 34735, "GeoTIFF keys", geoKeysOf(epsg)});
+    if (schema.pointFormat() >= 6)
+      frame.remarks.push_back(fmt::format("The coordinate system {} is not known here: it stands in the file as GeoTIFF keys, not as WKT", crs));
   }
+  for (const ForeignRecord& record : options.notes.records) add({record.user, record.id, record.description, record.payload});
+  frame.standardTimes = options.notes.gpsTime == GpsTimeKind::Standard ||
+                        (options.notes.gpsTime == GpsTimeKind::Unknown && schema.pointFormat() >= 6);
   if (!options.info.stations.empty())
     add({kStationsUser, kStationsRecord, "Scanner stations", makeStations(options.info.stations)});
   const bool old = schema.pointFormat() <= 3 && !frame.wkt && frame.extendedRecords.empty();
@@ -89,8 +110,8 @@ std::vector<std::byte> LasFileFrame::bytes(const LasSchema& schema, const LasSch
   const std::size_t headerSize = versionMinor >= 4 ? 375 : 227;
   std::vector<std::byte> bytes(headerSize);
   putText(bytes, 0, "LASF", 4);
-  // Bit 0: times are standard GPS times, for which those of the older formats cannot be told; bit 4: WKT.
-  put(bytes, 6, static_cast<std::uint16_t>((schema.pointFormat() >= 6 ? 1 : 0) | (wkt || schema.pointFormat() >= 6 ? 16 : 0)));
+  // Bit 0: times are standard GPS times; bit 4: WKT.
+  put(bytes, 6, static_cast<std::uint16_t>((standardTimes ? 1 : 0) | (wkt || schema.pointFormat() >= 6 ? 16 : 0)));
   bytes[24] = std::byte{1};
   bytes[25] = static_cast<std::byte>(versionMinor);
   putText(bytes, 26, "OTHER", 32);

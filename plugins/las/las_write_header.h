@@ -19,9 +19,10 @@ struct LasRecord {
 /// Everything before the first point and behind the last but the points.
 struct LasFileFrame {
   int versionMinor = 4;
-  bool compressed = false, wkt = false;
+  bool compressed = false, wkt = false, standardTimes = false;
   std::vector<LasRecord> records;          ///< in this order behind the header
   std::vector<LasRecord> extendedRecords;  ///< behind the points
+  std::vector<std::string> remarks;
 
   static LasFileFrame of(const LasSchema& schema, const ScanWriteOptions& options);
   /// Header and records. Totals and places that are not known yet are patched by writing it again.

@@ -61,9 +61,19 @@ class LasSink : public ScanSink {
     return m_file.commit();
   }
 
+  std::vector<std::string> remarks() const override {
+    std::vector<std::string> all = m_frame.remarks;
+    if (!m_schema) return all;
+    all.insert(all.end(), m_schema->remarks().begin(), m_schema->remarks().end());
+    const glm::dvec3& scale = m_schema->scale();
+    if (m_totals.rounding > 0)
+      all.push_back(fmt::format("Coordinates are rounded to steps of {} m: by up to {:.1e} m", std::max({scale.x, scale.y, scale.z}), m_totals.rounding));
+    return all;
+  }
+
  private:
   Result<void> begin(const PointBatch& first) {
-    auto schema = LasSchema::of(first, m_options.info, m_kind == Kind::Copc, m_path);
+    auto schema = LasSchema::of(first, m_options.info, m_options.notes, m_kind == Kind::Copc, m_path);
     if (!schema) return fail(schema.error());
     m_schema = std::move(*schema);
     m_frame = LasFileFrame::of(*m_schema, m_options);

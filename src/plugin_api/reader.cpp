@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <string_view>
 
+#include "survey/scan_notes.h"
+
 namespace alidade {
 
 namespace {
@@ -15,6 +17,10 @@ std::string_view textOf(const FileProbe& probe) {
 }
 
 }  // namespace
+
+Result<ScanNotes> ScanReader::notes(const std::string&) const {
+  return ScanNotes{};
+}
 
 Result<std::vector<ImportWarning>> ScanReader::readAnyOrder(const std::string& path, const NumberedSink& sink,
                                                             const Progress& progress) const {

@@ -23,6 +23,8 @@
 
 namespace alidade {
 
+struct ScanNotes;
+
 /// What a reader reads. A file is offered to every reader; the highest `sniff` wins.
 enum class ReaderKind { Scan, Design, Cameras, Pictures, Points };
 
@@ -76,6 +78,8 @@ class ScanReader : public Reader {
   ReaderKind kind() const final { return ReaderKind::Scan; }
   /// From the header alone; no point is loaded.
   virtual Result<ScanInfo> inspect(const std::string& path) const = 0;
+  /// What else the header says (survey/scan_notes.h). Here: nothing.
+  virtual Result<ScanNotes> notes(const std::string& path) const;
   /// Hands over all points in file order, in batches of at most some 100 k, on the calling thread.
   virtual Result<std::vector<ImportWarning>> read(const std::string& path, const BatchSink& sink,
                                                   const Progress& progress) const = 0;

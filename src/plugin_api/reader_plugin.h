@@ -24,5 +24,5 @@ class ReaderPlugin {
 
 }  // namespace alidade
 
-#define ALIDADE_READER_PLUGIN_IID "org.alidade.ReaderPlugin/4"
+#define ALIDADE_READER_PLUGIN_IID "org.alidade.ReaderPlugin/5"
 Q_DECLARE_INTERFACE(alidade::ReaderPlugin, ALIDADE_READER_PLUGIN_IID)

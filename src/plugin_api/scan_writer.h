@@ -6,11 +6,13 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/error.h"
 #include "base/progress.h"
 #include "plugin_api/reader.h"
 #include "survey/point_batch.h"
+#include "survey/scan_notes.h"
 
 namespace alidade {
 
@@ -24,7 +26,9 @@ struct OctreeCell {
 
 /// What is written beside the points.
 struct ScanWriteOptions {
-  ScanInfo info;  ///< CRS, scale, offset, stations; a scale of 0 means 0.1 mm about the bounds' middle
+  ScanInfo info;  ///< CRS, scale, offset, stations; a scale of 0 means the finest power of ten, 1e-9 m at
+                  ///< least, that reaches well over the bounds
+  ScanNotes notes;
   /// The cube that the cells count in: corner and edge, metres. Set where cells are given.
   glm::dvec3 cubeCorner{0};
   double cubeSize = 0;
@@ -40,6 +44,8 @@ class ScanSink {
   /// after the other. Tree formats fail without it.
   virtual Result<void> add(const PointBatch& batch, const std::optional<OctreeCell>& cell) = 0;
   virtual Result<void> finish() = 0;
+  /// What the format could not keep as it was; complete after `finish`.
+  virtual std::vector<std::string> remarks() const { return {}; }
 };
 
 /// Writes scans of one format. Like a Reader it has no state and every method is thread-safe.

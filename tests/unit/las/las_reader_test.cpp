@@ -206,7 +206,7 @@ TEST(LasReader, TheWktBitDecidesBetweenTwoCoordinateSystems) {
     file.put<std::uint16_t>(6, bit ? 0x10 : 0);
     const auto info = LasReader().inspect(file.write("crs.las"));
     ASSERT_TRUE(info.has_value());
-    EXPECT_EQ(info->crs, bit ? wkt : "EPSG:2056");
+    EXPECT_EQ(info->crs, bit ? wkt : "EPSG:2056+5728");
     if (!bit) {
       EXPECT_THAT(info->details, HasSubstr("EPSG:5728"));
     }
