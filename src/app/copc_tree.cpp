@@ -55,11 +55,14 @@ constexpr double kPointsAlong = 128;
 
 }  // namespace
 
-Result<void> writeTree(const PointStore& store, const ScanInfo& info, const ScanWriter& writer, const std::string& path, const Progress& progress) {
+Result<std::vector<std::string>> writeTree(const PointStore& store, const ScanInfo& info, const ScanNotes& notes, const ScanWriter& writer,
+                                           const std::string& path, const Progress& progress) {
   if (store.pointCount() == 0) return fail("There are no points to make a tree of", path, "Write an empty scan as LAS or LAZ");
   const NodeCells cells(store);
   ScanWriteOptions options;
   options.info = info;
+  options.info.bounds = store.bounds();
+  options.notes = notes;
   options.cubeCorner = cells.corner();
   options.cubeSize = store.nodes()[0].size;
   options.rootSpacing = options.cubeSize / kPointsAlong;
@@ -74,11 +77,12 @@ Result<void> writeTree(const PointStore& store, const ScanInfo& info, const Scan
       if (progress.cancelled()) return fail(cancelledError());
       progress.report(static_cast<double>(done) / static_cast<double>(store.pointCount()), "Writing the octree");
       const std::uint64_t count = std::min<std::uint64_t>(kBatch, node.count - first);
-      if (auto ok = (*sink)->add(store.batch(node.first + first, count), cells.of(node)); !ok) return ok;
+      if (auto ok = (*sink)->add(store.batch(node.first + first, count), cells.of(node)); !ok) return fail(ok.error());
       done += count;
     }
   }
-  return (*sink)->finish();
+  if (auto ok = (*sink)->finish(); !ok) return fail(ok.error());
+  return (*sink)->remarks();
 }
 
 }  // namespace alidade

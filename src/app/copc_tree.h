@@ -14,6 +14,8 @@ namespace alidade {
 /// Writes a store as the octree that COPC is: its nodes are the file's, its root cube the file's, so that a node holds the
 /// samples of its octave and a leaf all that is left. Nodes above the store's tiles stay empty, as the format allows. Batch by batch: memory does not grow with
 /// the store. `info` is what the file says of itself.
-Result<void> writeTree(const PointStore& store, const ScanInfo& info, const ScanWriter& writer, const std::string& path, const Progress& progress);
+/// Returns the sink's remarks.
+Result<std::vector<std::string>> writeTree(const PointStore& store, const ScanInfo& info, const ScanNotes& notes, const ScanWriter& writer,
+                                           const std::string& path, const Progress& progress);
 
 }  // namespace alidade

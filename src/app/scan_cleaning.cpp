@@ -21,6 +21,7 @@ constexpr std::uint8_t kUnclassified = 1, kGround = 2;  // ASPRS LAS 1.4 R15, ta
 /// The positions of a scan and what normals need beside them.
 struct Positions {
   ScanInfo info;
+  ScanNotes notes;
   std::vector<glm::dvec3> world;
   std::vector<std::uint16_t> scanner;  ///< empty, or one a point
   std::vector<glm::vec3> normal;       ///< empty, or one a point
@@ -37,7 +38,7 @@ Result<Positions> readPositions(const std::string& path, const Progress& progres
   Positions positions;
   const auto source = openScan(path, &positions.warnings);
   if (!source) return fail(source.error());
-  positions.info = source->info;
+  positions.info = source->info, positions.notes = source->notes;
   const auto read = source->read(
       [&](PointBatch& batch) {
         const auto append = [&](auto& to, const auto& from) {
@@ -170,7 +171,7 @@ Result<ScanCleaningSummary> cleanScan(const std::string& source, const std::stri
   }
 
   ScanWriteOptions options;
-  options.info = survivors.positions.info;
+  options.info = survivors.positions.info, options.notes = survivors.positions.notes;
   options.info.pointCount = points.size();
   options.info.bounds = Bounds{};
   for (const glm::dvec3& p : points) options.info.bounds.add(p);
@@ -178,6 +179,7 @@ Result<ScanCleaningSummary> cleanScan(const std::string& source, const std::stri
   if (!sink) return fail(sink.error());
   if (auto ok = writeChosen(source, survivors, ground, normals, **sink, progress.part(0.75, 1.0)); !ok) return fail(ok.error());
   if (auto ok = (*sink)->finish(); !ok) return fail(ok.error());
+  for (const std::string& remark : (*sink)->remarks()) summary.notes.push_back(remark);
   summary.written = points.size();
   return summary;
 }
@@ -201,7 +203,7 @@ Result<void> moveScan(const std::string& source, const std::string& target, cons
   const auto scan = openScan(source, nullptr);
   if (!scan) return fail(scan.error());
   ScanWriteOptions options;
-  options.info = scan->info;
+  options.info = scan->info, options.notes = scan->notes;
   for (Station& station : options.info.stations) station.worldFromScanner = targetFromSource * station.worldFromScanner;
   const Bounds& from = scan->info.bounds;
   options.info.bounds = Bounds{};

@@ -3,6 +3,7 @@
 
 #include "app/scan_conversion.h"
 
+#include <cmath>
 #include <filesystem>
 #include <span>
 
@@ -28,13 +29,33 @@ Result<ScanSource> openJoined(const std::vector<std::string>& paths, std::vector
     if (!scan) return fail(scan.error());
     scans.push_back(std::move(*scan));
   }
-  return joinScans(std::move(scans));
+  return joinScans(std::move(scans), &warnings);
+}
+
+Result<Bounds> boundsOf(const ScanSource& scan, const Progress& progress) {
+  Bounds bounds;
+  const auto read = scan.read(
+      [&](PointBatch& batch) {
+        for (const glm::dvec3& p : batch.position)
+          if (std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)) bounds.add(p);
+        return true;
+      },
+      progress);
+  if (!read) return fail(read.error());
+  if (progress.cancelled()) return fail(cancelledError());
+  return bounds;
 }
 
 Result<void> writeFlat(const ScanSource& scan, const ScanWriter& writer, const std::string& target, ScanConversion& done,
                        const Progress& progress) {
   ScanWriteOptions options;
-  options.info = scan.info;
+  options.info = scan.info, options.notes = scan.notes;
+  // Steps fit to the scan are chosen by its bounds, which a file of floating numbers need not state.
+  if (!glm::all(glm::greaterThan(options.info.scale, glm::dvec3(0))) && options.info.bounds.empty()) {
+    auto bounds = boundsOf(scan, progress.part(0, 0.4));
+    if (!bounds) return fail(bounds.error());
+    options.info.bounds = *bounds;
+  }
   auto sink = writer.create(target, options);
   if (!sink) return fail(sink.error());
   Result<void> added;
@@ -44,10 +65,12 @@ Result<void> writeFlat(const ScanSource& scan, const ScanWriter& writer, const s
         added = (*sink)->add(batch, {});
         return added.has_value();
       },
-      progress);
+      progress.part(0.4, 1));
   if (!read) return fail(read.error());
   if (!added) return fail(added.error());
-  return (*sink)->finish();
+  if (auto ok = (*sink)->finish(); !ok) return fail(ok.error());
+  done.warnings = (*sink)->remarks();
+  return {};
 }
 
 /// A store for the while of a conversion.
@@ -78,21 +101,27 @@ class PassingStore {
 
 Result<void> writeAsTree(const std::vector<std::string>& paths, const ScanWriter& writer, const std::string& target, ScanConversion& done,
                          std::vector<ImportWarning>& warnings, const Progress& progress) {
-  const auto write = [&](const PointStore& store, const ScanInfo& info, const Progress& part) {
+  const auto write = [&](const PointStore& store, const ScanInfo& info, const ScanNotes& notes, const Progress& part) -> Result<void> {
     done.points = store.pointCount();
-    return writeTree(store, info, writer, target, part);
+    auto remarks = writeTree(store, info, notes, writer, target, part);
+    if (!remarks) return fail(remarks.error());
+    done.warnings = std::move(*remarks);
+    return {};
   };
   if (paths.size() == 1 && isStoreFolder(paths.front())) {
     const auto store = openStore(paths.front());
     if (!store) return fail(store.error());
-    if (store->parts.size() == 1) return write(*store->parts.front().points, store->parts.front().manifest.info, progress);
+    if (store->parts.size() == 1) {
+      const PartManifest& manifest = store->parts.front().manifest;
+      return write(*store->parts.front().points, manifest.info, manifest.notes, progress);
+    }
   }
   auto scan = openJoined(paths, warnings);
   if (!scan) return fail(scan.error());
   PassingStore passing(target);
   const auto store = passing.make(*scan, done, progress.part(0, 0.6));
   if (!store) return fail(store.error());
-  return write(*store->parts.front().points, scan->info, progress.part(0.6, 1));
+  return write(*store->parts.front().points, scan->info, scan->notes, progress.part(0.6, 1));
 }
 
 }  // namespace
@@ -113,7 +142,8 @@ Result<ScanConversion> convertScans(const std::vector<std::string>& scans, const
     if (!scan) return fail(scan.error());
     if (auto ok = writeFlat(*scan, **writer, target, done, progress); !ok) return fail(ok.error());
   }
-  for (const ImportWarning& warning : warnings) done.warnings.push_back(fmt::format("{}: {}", warning.where, warning.what));
+  for (const ImportWarning& warning : warnings)
+    done.warnings.push_back(fmt::format("{}: {}", warning.where, warning.what));
   if (done.dropped > 0) done.warnings.push_back(fmt::format("{} points without usable coordinates were left out", done.dropped));
   return done;
 }

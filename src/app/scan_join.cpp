@@ -8,6 +8,8 @@
 #include <cstring>
 #include <memory>
 
+#include <fmt/format.h>
+
 namespace alidade {
 
 namespace {
@@ -23,8 +25,10 @@ class Columns {
     m_scanner |= !batch.scanner.empty();
     m_grid |= !batch.row.empty();
     m_normal |= !batch.normal.empty();
-    for (const ExtraColumn& column : batch.extra)
-      if (!find(m_extra, column.name)) m_extra.push_back({column.name, column.type, column.components, {}});
+    for (std::size_t i = 0; i < batch.extra.size(); ++i) {
+      const ExtraColumn& column = batch.extra[i];
+      if (!find(m_extra, column.name, ordinalOf(batch.extra, i))) m_extra.push_back({column.name, column.type, column.components, {}});
+    }
   }
 
   void complete(PointBatch& batch) const {
@@ -38,8 +42,9 @@ class Columns {
       batch.column.resize(count);
     }
     if (m_normal && batch.normal.empty()) batch.normal.resize(count);
-    for (const ExtraColumn& column : m_extra) {
-      if (find(batch.extra, column.name)) continue;
+    for (std::size_t i = 0; i < m_extra.size(); ++i) {
+      const ExtraColumn& column = m_extra[i];
+      if (find(batch.extra, column.name, ordinalOf(m_extra, i))) continue;
       if (column.name == "scan_angle_rank" && find(batch.extra, "scan_angle")) continue;
       ExtraColumn& added = batch.extra.emplace_back(column);
       added.data.resize(count * added.bytesPerPoint());
@@ -47,12 +52,19 @@ class Columns {
   }
 
  private:
-  static ExtraColumn* find(std::vector<ExtraColumn>& columns, const std::string& name) {
-    const auto found = std::find_if(columns.begin(), columns.end(), [&](const auto& each) { return each.name == name; });
-    return found == columns.end() ? nullptr : &*found;
+  /// Among the columns of its name, from 0.
+  static std::size_t ordinalOf(const std::vector<ExtraColumn>& columns, std::size_t index) {
+    std::size_t ordinal = 0;
+    for (std::size_t i = 0; i < index; ++i) ordinal += columns[i].name == columns[index].name;
+    return ordinal;
   }
-  static const ExtraColumn* find(const std::vector<ExtraColumn>& columns, const std::string& name) {
-    return find(const_cast<std::vector<ExtraColumn>&>(columns), name);
+  static ExtraColumn* find(std::vector<ExtraColumn>& columns, const std::string& name, std::size_t ordinal = 0) {
+    for (ExtraColumn& column : columns)
+      if (column.name == name && ordinal-- == 0) return &column;
+    return nullptr;
+  }
+  static const ExtraColumn* find(const std::vector<ExtraColumn>& columns, const std::string& name, std::size_t ordinal = 0) {
+    return find(const_cast<std::vector<ExtraColumn>&>(columns), name, ordinal);
   }
 
   /// The older formats' whole degrees as the newer ones' 0.006 degrees.
@@ -97,6 +109,40 @@ Result<ScanInfo> describeAll(const std::vector<ScanSource>& scans) {
   return all;
 }
 
+/// What all the scans' files say together.
+ScanNotes joinNotes(const std::vector<ScanSource>& scans, std::vector<ImportWarning>* warnings) {
+  if (scans.size() == 1) return scans.front().notes;
+  ScanNotes all;
+  const auto warn = [&](std::string what, const ScanSource& scan) {
+    if (warnings != nullptr) warnings->push_back({std::move(what), scan.name});
+  };
+  const auto meaningIn = [](const ScanNotes& notes, const std::string& column) {
+    const auto found = std::ranges::find(notes.columns, column, &ColumnMeaning::column);
+    return found == notes.columns.end() ? ColumnMeaning{column, {}, 0, {}, {}, {}, glm::dvec3(1), glm::dvec3(0)} : *found;
+  };
+  for (const ScanSource& scan : scans) {
+    all.degrees |= scan.notes.degrees;
+    if (all.gpsTime == GpsTimeKind::Unknown) all.gpsTime = scan.notes.gpsTime;
+    else if (scan.notes.gpsTime != GpsTimeKind::Unknown && scan.notes.gpsTime != all.gpsTime)
+      warn("The scans count GPS times differently, one in seconds of the week and one in standard time; all are kept as they are and named as the first scan's", scan);
+    for (const ForeignRecord& record : scan.notes.records)
+      warn(fmt::format("Record {} of {} is left out: it is of one scan of several", record.id, record.user), scan);
+    for (const ColumnMeaning& meaning : scan.notes.columns) {
+      if (std::ranges::find(all.columns, meaning.column, &ColumnMeaning::column) != all.columns.end()) continue;
+      const bool same = std::ranges::all_of(scans, [&](const ScanSource& other) {
+        return std::ranges::find(other.info.attributes, meaning.column) == other.info.attributes.end() ||
+               meaningIn(other.notes, meaning.column).sameNumbers(meaning);
+      });
+      ColumnMeaning& joined = all.columns.emplace_back(meaning);
+      joined.given &= same ? 0x19 : 0;  // the extremes are one scan's
+      if (!same)
+        warn(fmt::format("The scans' column \"{}\" has different scales, offsets or marks for missing values: its numbers are kept as they are, and these left out",
+                         meaning.column), scan);
+    }
+  }
+  return all;
+}
+
 struct Joined {
   std::vector<ScanSource> scans;
   std::vector<std::uint16_t> firstStation;  ///< a scan's station 0 among all
@@ -124,10 +170,11 @@ struct Joined {
 
 }  // namespace
 
-Result<ScanSource> joinScans(std::vector<ScanSource> scans) {
+Result<ScanSource> joinScans(std::vector<ScanSource> scans, std::vector<ImportWarning>* warnings) {
   if (scans.empty()) return fail("There are no scans", {}, "Name at least one");
   auto info = describeAll(scans);
   if (!info) return fail(info.error());
+  ScanNotes notes = joinNotes(scans, warnings);
   auto joined = std::make_shared<Joined>();
   std::size_t stations = 0;
   for (const ScanSource& scan : scans) {
@@ -144,6 +191,7 @@ Result<ScanSource> joinScans(std::vector<ScanSource> scans) {
   source.name = scans.front().name;
   if (scans.size() == 1) source.identity = scans.front().identity;
   source.info = std::move(*info);
+  source.notes = std::move(notes);
   joined->scans = std::move(scans);
   source.read = [joined](const ScanSource::Sink& sink, const Progress& progress) {
     return joined->readAll(sink, progress, [](const ScanSource& scan, const auto& take, const Progress& part) { return scan.read(take, part); });

@@ -45,6 +45,7 @@ ScanSource scanSourceOf(const StorePart& part, const std::string& path) {
   source.name = path;
   source.identity = part.manifest.identity;
   source.info = part.manifest.info;
+  source.notes = part.manifest.notes;
   source.info.pointCount = part.points->pointCount();
   source.info.bounds = part.points->bounds();
   source.read = [points = part.points](const ScanSource::Sink& sink, const Progress& progress) -> Result<void> {
@@ -79,6 +80,7 @@ ScanSource scanSourceOf(const ScanReader& reader, const std::string& path, const
   source.name = path;
   source.identity = identityOf(path, reader.description().id);
   source.info = info;
+  if (auto notes = reader.notes(path)) source.notes = std::move(*notes);
   source.read = [&reader, path, warnings](const ScanSource::Sink& sink, const Progress& progress) -> Result<void> {
     const auto read = reader.read(path, sink, progress);
     if (!read) return fail(read.error());
@@ -111,7 +113,7 @@ Result<ScanSource> openScan(const std::string& path, std::vector<ImportWarning>*
     std::vector<ScanSource> parts;
     for (const StorePart& part : store->parts) parts.push_back(scanSourceOf(part, path));
     if (parts.size() == 1) return std::move(parts.front());
-    return joinScans(std::move(parts));
+    return joinScans(std::move(parts), warnings);
   }
   const auto reader = ReaderRegistry::instance().findAs<ScanReader>(path);
   if (!reader) return fail(reader.error());

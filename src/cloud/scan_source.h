@@ -11,6 +11,7 @@
 #include "base/progress.h"
 #include "survey/point_batch.h"
 #include "survey/point_records.h"
+#include "survey/scan_notes.h"
 
 namespace alidade {
 
@@ -23,6 +24,7 @@ struct ScanSource {
   std::string name;      ///< for messages and the manifest
   std::string identity;  ///< changes when the source does: path, size, time
   ScanInfo info;
+  ScanNotes notes;
   std::function<Result<void>(const Sink& sink, const Progress& progress)> read;
   /// The same points, handed over on the threads that made them, several at once; `number` tells the order that `read`
   /// would have. Empty: the source has no threads of its own.

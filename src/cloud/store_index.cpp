@@ -168,6 +168,7 @@ Result<PartManifest> finishPart(FileSink& sink, const PartTree& tree, const Scan
   part.folder = partFolderName(number);
   part.source = scan.name, part.identity = scan.identity;
   part.info = scan.info;
+  part.notes = scan.notes;
   part.lattice = tree.lattice, part.schema = tree.schema;
   part.levelKind = data.levelKind, part.law = data.law, part.lawShift = data.lawShift;
   part.seed = tree.tree.seed;

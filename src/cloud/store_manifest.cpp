@@ -28,6 +28,8 @@ constexpr std::uint64_t kMostPoints = std::uint64_t{1} << 48, kMostManifestBytes
 constexpr const char* kTypeNames[] = {"i8", "u8", "i16", "u16", "i32", "u32", "i64", "u64", "f32", "f64"};
 /// By ExactCoordinates.
 constexpr const char* kExactNames[] = {"lattice", "i32", "f32", "f64"};
+/// By GpsTimeKind.
+constexpr const char* kTimeNames[] = {"unknown", "of-week", "standard"};
 /// By LevelKind.
 constexpr const char* kLevelNames[] = {"blue-noise", "random"};
 
@@ -70,12 +72,39 @@ Json infoJson(const ScanInfo& info) {
           {"stations", stations},            {"details", textJson(info.details)}};
 }
 
+/// Two digits a byte.
+std::string hexOf(const std::vector<std::byte>& bytes) {
+  constexpr std::string_view digits = "0123456789abcdef";
+  std::string text;
+  text.reserve(2 * bytes.size());
+  for (const std::byte byte : bytes) {
+    text += digits[std::to_integer<std::size_t>(byte) >> 4];
+    text += digits[std::to_integer<std::size_t>(byte) & 15];
+  }
+  return text;
+}
+
+Json notesJson(const ScanNotes& notes) {
+  Json out = Json::object(), columns = Json::array(), records = Json::array();
+  for (const ColumnMeaning& c : notes.columns)
+    columns.push_back({{"column", textJson(c.column)}, {"description", textJson(c.description)}, {"given", c.given}, {"no_data", c.noData},
+                       {"least", c.least}, {"largest", c.largest}, {"scale", vecJson(c.scale)}, {"offset", vecJson(c.offset)}});
+  for (const ForeignRecord& r : notes.records)
+    records.push_back({{"user", textJson(r.user)}, {"id", r.id}, {"description", textJson(r.description)}, {"payload", hexOf(r.payload)}});
+  if (!columns.empty()) out["columns"] = std::move(columns);
+  if (notes.gpsTime != GpsTimeKind::Unknown) out["gps_time"] = kTimeNames[static_cast<int>(notes.gpsTime)];
+  if (!records.empty()) out["records"] = std::move(records);
+  if (notes.degrees) out["degrees"] = true;
+  return out;
+}
+
 Json partJson(const PartManifest& part) {
+  const Json notes = notesJson(part.notes);
   Json columns = Json::array();
   for (const ColumnShape& c : part.schema.columns)
     columns.push_back({{"name", textJson(c.name)}, {"type", kTypeNames[static_cast<int>(c.type)]}, {"components", c.components},
                        {"extra", c.extra}, {"ordinal", c.ordinal}});
-  return {{"folder", part.folder},
+  Json json = {{"folder", part.folder},
           {"source", textJson(part.source)},
           {"identity", textJson(part.identity)},
           {"scan", infoJson(part.info)},
@@ -91,6 +120,8 @@ Json partJson(const PartManifest& part) {
           {"nodes", {{"count", part.nodeCount}, {"checksum", part.nodesChecksum}}},
           {"tables", {{"count", part.tableCount}, {"checksum", part.tablesChecksum}}},
           {"purpose", part.purpose}};
+  if (!notes.empty()) json["notes"] = notes;
+  return json;
 }
 
 /// Thrown and caught in this file alone, as the library's own exceptions are.
@@ -172,6 +203,47 @@ ScanInfo infoOf(const Json& j) {
   return info;
 }
 
+std::vector<std::byte> bytesOf(const Json& j) {
+  const std::string text = textOf(j);
+  const auto digit = [](char c) {
+    if (c >= '0' && c <= '9') return c - '0';
+    if (c < 'a' || c > 'f') refuse("a digit");
+    return c - 'a' + 10;
+  };
+  if (text.size() % 2 != 0) refuse("a digit");
+  std::vector<std::byte> bytes(text.size() / 2);
+  for (std::size_t i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<std::byte>(digit(text[2 * i]) * 16 + digit(text[2 * i + 1]));
+  return bytes;
+}
+
+ColumnMeaning::Triple tripleOf(const Json& j) {
+  if (!j.is_array() || j.size() != 3) refuse("a triple");
+  ColumnMeaning::Triple triple;
+  for (std::size_t i = 0; i < 3; ++i) triple[i] = countOf(j[i], std::numeric_limits<std::uint64_t>::max());
+  return triple;
+}
+
+/// Every field may be absent.
+ScanNotes notesOf(const Json& j) {
+  ScanNotes notes;
+  if (j.contains("columns"))
+    for (const Json& c : j.at("columns")) {
+      ColumnMeaning meaning;
+      meaning.column = textOf(c.at("column")), meaning.description = textOf(c.at("description"));
+      meaning.given = static_cast<std::uint8_t>(countOf(c.at("given"), 0x1F));
+      meaning.noData = tripleOf(c.at("no_data")), meaning.least = tripleOf(c.at("least")), meaning.largest = tripleOf(c.at("largest"));
+      meaning.scale = vecOf(c.at("scale")), meaning.offset = vecOf(c.at("offset"));
+      notes.columns.push_back(std::move(meaning));
+    }
+  if (j.contains("gps_time")) notes.gpsTime = static_cast<GpsTimeKind>(choiceOf(j.at("gps_time"), kTimeNames));
+  if (j.contains("records"))
+    for (const Json& r : j.at("records"))
+      notes.records.push_back({textOf(r.at("user")), static_cast<std::uint16_t>(countOf(r.at("id"), 65535)), textOf(r.at("description")),
+                               bytesOf(r.at("payload"))});
+  if (j.contains("degrees")) notes.degrees = flagOf(j.at("degrees"));
+  return notes;
+}
+
 Lattice latticeOf(const Json& j) {
   Lattice lattice;
   lattice.exact = static_cast<ExactCoordinates>(choiceOf(j.at("exact"), kExactNames));
@@ -205,6 +277,7 @@ PartManifest partOf(const Json& j, std::size_t number) {
   if (part.folder != partFolderName(number)) refuse("a folder");
   part.source = textOf(j.at("source")), part.identity = textOf(j.at("identity"));
   part.info = infoOf(j.at("scan"));
+  if (j.contains("notes")) part.notes = notesOf(j.at("notes"));
   part.lattice = latticeOf(j.at("lattice"));
   part.schema.rgbWhite = static_cast<std::uint16_t>(countOf(j.at("rgb_white"), 65535));
   if (part.schema.rgbWhite != 255 && part.schema.rgbWhite != 65535) refuse("a brightness");

@@ -14,6 +14,7 @@
 #include "cloud/point_schema.h"
 #include "cloud/point_store.h"
 #include "survey/point_batch.h"
+#include "survey/scan_notes.h"
 
 namespace alidade {
 
@@ -23,6 +24,7 @@ struct PartManifest {
   std::string source;    ///< the scan it was made from
   std::string identity;  ///< ScanSource::identity
   ScanInfo info;         ///< the source's
+  ScanNotes notes;       ///< the source's, without its warnings
   Lattice lattice;
   PointSchema schema;
   LevelKind levelKind = LevelKind::BlueNoise;
