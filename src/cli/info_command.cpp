@@ -11,6 +11,7 @@
 #include "cloud/store_folder.h"
 #include "io/project_store.h"
 #include "io/reader_registry.h"
+#include "survey/scan_notes.h"
 
 namespace alidade::cli {
 
@@ -32,8 +33,11 @@ Json boundsJson(const Bounds& bounds) {
   return {{"min", vec(bounds.min)}, {"max", vec(bounds.max)}};
 }
 
-std::string boundsText(const Bounds& bounds) {
+std::string boundsText(const Bounds& bounds, bool degrees = false) {
   if (bounds.empty()) return "  bounds    not stated\n";
+  if (degrees)
+    return fmt::format("  bounds    E {:.8f} … {:.8f}°  N {:.8f} … {:.8f}°  H {:.3f} … {:.3f}\n", bounds.min.x, bounds.max.x, bounds.min.y,
+                       bounds.max.y, bounds.min.z, bounds.max.z);
   return fmt::format("  bounds    E {:.3f} … {:.3f}  N {:.3f} … {:.3f}  H {:.3f} … {:.3f} m\n", bounds.min.x, bounds.max.x,
                      bounds.min.y, bounds.max.y, bounds.min.z, bounds.max.z);
 }
@@ -67,20 +71,23 @@ std::string stationsText(const std::vector<Station>& stations) {
 Result<Description> describe(const ScanReader& reader, const std::string& path) {
   const auto info = reader.inspect(path);
   if (!info) return fail(info.error());
+  const auto notes = reader.notes(path);
+  if (!notes) return fail(notes.error());
   const glm::dvec3 size = info->bounds.size();
-  const double area = size.x * size.y, density = area > 0 ? static_cast<double>(info->pointCount) / area : 0;
+  const double area = notes->degrees ? 0 : size.x * size.y, density = area > 0 ? static_cast<double>(info->pointCount) / area : 0;
   Description out;
   out.json = {{"kind", "scan"},        {"points", info->pointCount}, {"bounds_m", boundsJson(info->bounds)},
               {"crs", info->crs},      {"scale_m", vec(info->scale)}, {"attributes", info->attributes},
-              {"stations", Json::array()}, {"details", info->details}};
+              {"stations", Json::array()}, {"details", info->details}, {"warnings", notes->warnings}};
   out.json["points_per_square_metre"] = area > 0 ? Json(density) : Json(nullptr);
   for (const Station& station : info->stations)
     out.json["stations"].push_back({{"name", station.name}, {"position_m", vec(station.worldFromScanner.translation)},
                                     {"rows", station.rows}, {"columns", station.columns}});
-  out.text = fmt::format("  points    {}\n", info->pointCount) + boundsText(info->bounds) + densityText(density) +
+  out.text = fmt::format("  points    {}\n", info->pointCount) + boundsText(info->bounds, notes->degrees) + densityText(density) +
              crsText(info->crs) + fmt::format("  columns   {}\n", fmt::join(info->attributes, ", "));
   if (!info->stations.empty()) out.text += fmt::format("  stations  {}\n", info->stations.size()) + stationsText(info->stations);
   out.text += fmt::format("  format    {}\n", info->details);
+  for (const std::string& warning : notes->warnings) out.text += fmt::format("  warning   {}\n", warning);
   return out;
 }
 

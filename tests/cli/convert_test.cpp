@@ -8,11 +8,13 @@
 #include <cstdlib>
 #include <cstring>
 #include <fstream>
+#include <iterator>
 
 #include <gtest/gtest.h>
 
 #include "command_line.h"
 #include "io/reader_registry.h"
+#include "unit/las/las_file_maker.h"
 
 namespace alidade::test {
 
@@ -120,6 +122,66 @@ TEST(Convert, AStoreOfSeveralScansBecomesOneTree) {
   EXPECT_GT(high, 2000u);
   EXPECT_LT(low + high, 20000u);
   EXPECT_EQ(pointsOf(copc).size(), 80000u);
+}
+
+// Places of the fields: LAS 1.4 R15, tables 3, 7 and 24.
+TEST(Convert, WhatAFileSaysBesideItsPointsGoesThroughAStore) {
+  testing::LasFileMaker file(2, 1, 30);
+  std::vector<std::uint8_t> entry = testing::LasFileMaker::extraBytes("height_above", 3, 0x18);
+  const double scale = 0.01, offset = -5;
+  std::memcpy(&entry[112], &scale, 8), std::memcpy(&entry[136], &offset, 8);
+  file.addVlr("LASF_Spec", 4, entry);
+  file.addVlr("MyCompany", 77, {'p', 'r', 'e', 'c', 'i', 'o', 'u', 's'});
+  file.addVlr("LASF_Projection", 34735, testing::LasFileMaker::geoKeys({{1024, 1}, {3072, 2056}, {4096, 5728}}));
+  file.put<std::uint16_t>(6, 1);
+  for (int i = 0; i < 1000; ++i) file.addPoint(i * 37 % 1000, i * 91 % 1000, i);
+  const fs::path store = scratch() / "notes.alidade-points", las = scratch() / "notes.las", copc = scratch() / "notes.copc.laz";
+  const fs::path source = file.write("notes_source.las");
+  ASSERT_EQ(alidadeCli("index " + quoted(source) + " -o " + quoted(store)).exitCode, 0);
+  expectConverted(store, las);
+  expectConverted(source, copc);
+  for (const fs::path& path : {las, copc}) {
+    std::ifstream in(path, std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+    EXPECT_NE(bytes.find(std::string(entry.begin(), entry.end())), std::string::npos) << path;
+    EXPECT_NE(bytes.find("precious"), std::string::npos) << path;
+    EXPECT_EQ(bytes[6] & 1, 1) << path << ": standard GPS time";
+    EXPECT_EQ(infoOf(path)["crs"], "EPSG:2056+5728") << path;
+  }
+}
+
+TEST(Convert, FloatingCoordinatesAreWrittenInFineSteps) {
+  const fs::path text = scratch() / "fine.xyz", las = scratch() / "fine.las";
+  std::ofstream(text) << "2683512.12345678 1247811.98765432 413.1\n2683514.5 1247813.25 414.12345678\n";
+  expectConverted(text, las);
+  const auto reader = registry().findAs<ScanReader>(las.string());
+  ASSERT_TRUE(reader.has_value());
+  std::vector<glm::dvec3> points;
+  const auto read = (*reader)->read(
+      las.string(),
+      [&](PointBatch& batch) {
+        points.insert(points.end(), batch.position.begin(), batch.position.end());
+        return true;
+      },
+      Progress());
+  ASSERT_TRUE(read.has_value());
+  ASSERT_EQ(points.size(), 2u);
+  EXPECT_NEAR(points[0].x, 2683512.12345678, 1e-8);
+  EXPECT_NEAR(points[0].y, 1247811.98765432, 1e-8);
+  EXPECT_NEAR(points[1].z, 414.12345678, 1e-8);
+}
+
+TEST(Info, DegreesAreSaidAndHaveNoDensity) {
+  testing::LasFileMaker file(2, 0, 20);
+  file.addVlr("LASF_Projection", 34735, testing::LasFileMaker::geoKeys({{1024, 2}, {2048, 4326}}));
+  file.addPoint(1, 2, 3), file.addPoint(1000, 2000, 3);
+  for (int axis = 0; axis < 3; ++axis) file.put<double>(static_cast<std::size_t>(179 + 16 * axis), 2.0);
+  const fs::path path = file.write("degrees.las");
+  const auto outcome = alidadeCli("info " + quoted(path));
+  EXPECT_NE(outcome.output.find("degrees of latitude"), std::string::npos) << outcome.output;
+  EXPECT_EQ(outcome.output.find("square metre"), std::string::npos) << outcome.output;
+  EXPECT_TRUE(infoOf(path)["points_per_square_metre"].is_null());
+  EXPECT_EQ(infoOf(path)["warnings"].size(), 1u);
 }
 
 TEST(Convert, RefusesItselfWhatIsThereAndWhatIsEmpty) {
