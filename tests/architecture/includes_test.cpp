@@ -47,6 +47,7 @@ const std::map<std::string, std::vector<std::string>> kOwners = {
     {"ifcpp/", {"plugins/ifc"}},
     {"assimp/", {"plugins/mesh"}},
     {"embree3/", {"src/simulate", "src/inspect"}},
+    {"proj.h", {"plugins/las"}},
     {"QWidget", {"ui"}},
     {"QtWidgets", {"ui"}},
     {"QMainWindow", {"ui"}},
