@@ -210,7 +210,7 @@ void Calibration::describe(const NetworkSummary& adjusted) {
   const CameraAccuracy& accuracy = adjusted.cameraAccuracy[0];
   const int count = parameterCount(m_lens.model);
   for (int a = 0; a < count; ++a) {
-    s.parameterStd.push_back(adjusted.sigma0 * accuracy.std(a));
+    s.parameterStd.push_back(adjusted.sigma0 / adjusted.sigmaScale * accuracy.std(a));
     for (int b = 0; b < count; ++b) s.correlation.push_back(accuracy.correlation(a, b));
   }
   for (std::size_t i = 0; i < m_pictures.size(); ++i)

@@ -11,6 +11,7 @@
 
 #include "adjust/network_checks.h"
 #include "adjust/network_description.h"
+#include "adjust/resection_checks.h"
 #include "adjust/robust.h"
 
 namespace alidade {
@@ -43,6 +44,7 @@ class Adjustment {
   void robustStart();
   bool settleOutliers();
   void dropLoosePoints();
+  void warnOfTwins();
   NetworkSummary refused(std::string reason);
 
   const NetworkOptions& m_options;
@@ -91,6 +93,16 @@ std::optional<std::string> Adjustment::leaveOutBehind() {
     m_warnings.push_back(fmt::format("{} observations lie behind their camera and take no part (\"{}\" first); check them",
                                      behind, first));
   return std::nullopt;
+}
+
+void Adjustment::warnOfTwins() {
+  const Network& network = m_terms.network();
+  std::vector<KnownPick> picks;
+  for (const PictureObservation& o : network.observations) {
+    const NetworkPoint& point = network.points[o.point];
+    if (!o.heldOut && point.kind != PointKind::Tie) picks.push_back({o.frame, o.pixel, *point.world, point.name});
+  }
+  if (auto twins = warningOfTwins(std::move(picks))) m_warnings.push_back(std::move(*twins));
 }
 
 bool Adjustment::fit(double huber) {
@@ -155,6 +167,7 @@ Result<NetworkSummary> Adjustment::run() {
   auto start = startState(m_terms.network(), m_layout, m_warnings);
   if (!start) return fail(start.error());
   m_start = m_state = std::move(*start);
+  warnOfTwins();
   if (m_layout.freeUnknowns == 0)
     return refused("Poses, offsets, calibrations and clocks are all locked, nothing is left to adjust; free one of them");
   if (const auto why = leaveOutBehind()) return refused(*why);
@@ -177,7 +190,8 @@ Result<NetworkSummary> Adjustment::run() {
                                "wrong observations", m_options.maximumIterations));
   if (const auto why = refusalOfFrames(m_terms, m_state, m_active)) return refused(*why);
 
-  bool known = false;
+  NetworkSummary summary = describe(m_terms, m_state, m_active, m_options);
+  if (m_scale > 1) summary.sigmaScale = std::max(1.0, summary.sigma0);
   if (m_options.covariance && !m_options.freeNetwork) {
     m_normals.linearise(m_state, 0);
     if (!m_normals.factorUndamped()) {
@@ -186,13 +200,12 @@ Result<NetworkSummary> Adjustment::run() {
                                  "pose that fix it, or lock what is known",
                                  unknownName(m_terms.network(), m_layout, weak.block, weak.column)));
     }
-    if (const auto why = refusalOfWeakness(m_terms, m_state, m_active, m_normals, m_scale)) return refused(*why);
-    known = true;
+    m_normals.useSigmaScale(summary.sigmaScale);
+    if (const auto why = refusalOfWeakness(m_terms, m_state, m_active, m_normals)) return refused(*why);
+    describeAccuracy(m_terms, m_state, m_normals, m_options, summary);
   }
-  NetworkSummary summary = describe(m_terms, m_state, m_active, known ? &m_normals : nullptr, m_options);
   summary.converged = true;
-  summary.reason = m_scale > 1 ? fmt::format("Converged, but the residuals are about {:.1f} times the given sigmas", summary.sigma0)
-                               : "Converged";
+  summary.reason = reasonOfConvergence(m_scale > 1, summary.sigma0);
   summary.iterations = m_iterations;
   summary.initialCost = m_initialCost;
   summary.warnings = m_warnings;

@@ -31,9 +31,9 @@ std::optional<std::string> refusalOfFrames(const NetworkTerms& terms, const Netw
                                            const std::vector<char>& active);
 
 /// A sentence where what is adjusted is left open: singular equations, or standard deviations beyond a twentieth of the
-/// distance to what was seen. After NormalSystem::factorUndamped().
+/// distance to what was seen or beyond a metre. After NormalSystem::factorUndamped().
 std::optional<std::string> refusalOfWeakness(const NetworkTerms& terms, const NetworkState& state,
-                                             const std::vector<char>& active, const NormalSystem& normals, double scale);
+                                             const std::vector<char>& active, const NormalSystem& normals);
 
 /// What an unknown is called in sentences: "the centre's E of pose P".
 std::string unknownName(const Network& network, const NetworkLayout& layout, int block, int column);

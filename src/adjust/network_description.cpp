@@ -274,7 +274,7 @@ NetworkSummary startSummary(const NetworkTerms& terms, const NetworkState& start
 }
 
 NetworkSummary describe(const NetworkTerms& terms, const NetworkState& state, const std::vector<char>& active,
-                        const NormalSystem* normals, const NetworkOptions& options) {
+                        const NetworkOptions& options) {
   NetworkSummary summary = startSummary(terms, state);
   describeResiduals(terms, state, active, summary);
   std::vector<char> seen(terms.layout().slotPoint.size(), 0);
@@ -289,17 +289,20 @@ NetworkSummary describe(const NetworkTerms& terms, const NetworkState& state, co
     if (!seen[slot] && terms.network().points[p].kind == PointKind::Tie) summary.points[p] = glm::dvec3(noNumber);
   }
   describeCheckPoints(terms, state, summary);
-  if (!normals) return summary;
-  describePoses(terms, *normals, summary);
-  describeCameras(terms, state, *normals, summary);
-  describeMounts(terms, *normals, summary);
-  describeCorrelations(terms, *normals, summary);
+  return summary;
+}
+
+void describeAccuracy(const NetworkTerms& terms, const NetworkState& state, const NormalSystem& normals,
+                      const NetworkOptions& options, NetworkSummary& summary) {
+  describePoses(terms, normals, summary);
+  describeCameras(terms, state, normals, summary);
+  describeMounts(terms, normals, summary);
+  describeCorrelations(terms, normals, summary);
   describeFocalAndDistance(terms.network(), summary);
   for (std::size_t i = 0; i < summary.clockStdSecs.size(); ++i)
     if (terms.layout().clockBlock[i] >= 0)
-      summary.clockStdSecs[i] = std::sqrt(std::max(0.0, normals->covariance({terms.layout().clockBlock[i]})(0, 0)));
-  for (const NetworkOptions::At& at : options.at) summary.expected.push_back(expectedAt(terms, state, *normals, at));
-  return summary;
+      summary.clockStdSecs[i] = std::sqrt(std::max(0.0, normals.covariance({terms.layout().clockBlock[i]})(0, 0)));
+  for (const NetworkOptions::At& at : options.at) summary.expected.push_back(expectedAt(terms, state, normals, at));
 }
 
 }  // namespace alidade

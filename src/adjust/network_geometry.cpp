@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "adjust/network_checks.h"
+#include "adjust/resection_checks.h"
 #include "adjust/start_pose.h"
 
 namespace alidade {
@@ -206,7 +207,7 @@ std::optional<std::string> refusalOfFrames(const NetworkTerms& terms, const Netw
       return fmt::format("{} has {} measured pixel coordinates for {} free parameters; observe more points in it", name, rows, free);
     const FrameView& view = at->second;
     if (free == 6 && view.edges == 0 && view.known + view.tied < 4)
-      return fmt::format("{} has {} observations for 6 free parameters, at least 4 are needed; observe more points in it",
+      return fmt::format("{} has {} observations for 6 free parameters, at least 4 are needed (three leave up to four poses, the fourth decides); observe more points in it",
                          name, view.known + view.tied);
     if (free >= 3 && glm::length(view.high - view.low) < std::max(1.0, 6 * view.sigmaPx))
       return fmt::format("All pixels of {} lie in one spot; observe points all over the picture", name);
@@ -221,7 +222,7 @@ std::optional<std::string> refusalOfFrames(const NetworkTerms& terms, const Netw
 }
 
 std::optional<std::string> refusalOfWeakness(const NetworkTerms& terms, const NetworkState& state,
-                                             const std::vector<char>& active, const NormalSystem& normals, double scale) {
+                                             const std::vector<char>& active, const NormalSystem& normals) {
   const Network& network = terms.network();
   const NetworkLayout& layout = terms.layout();
   const auto views = viewsOf(terms, state, active);
@@ -235,10 +236,10 @@ std::optional<std::string> refusalOfWeakness(const NetworkTerms& terms, const Ne
     const double distance = distances[distances.size() / 2];
     const Eigen::MatrixXd covariance = normals.covariance({block});
     const auto largest = [&](int first) {
-      return scale * std::sqrt(std::max(0.0, Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(
-                                                 Eigen::Matrix3d(covariance.block<3, 3>(first, first))).eigenvalues()[2]));
+      return std::sqrt(std::max(0.0, Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(
+                                         Eigen::Matrix3d(covariance.block<3, 3>(first, first))).eigenvalues()[2]));
     };
-    if (const double position = largest(0); !(position <= weakest * distance))
+    if (const double position = largest(0); !(position <= weakestPositionM(distance)))
       return fmt::format("The position of {} is undetermined: its standard deviation would be {:.3g} m with what it sees "
                          "{:.3g} m away; observe what is nearer, spread over the picture and in depth, or lock the position",
                          frameName(network, f), position, distance);

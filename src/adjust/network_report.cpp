@@ -104,6 +104,15 @@ std::string mountsText(const Network& network, const NetworkSummary& summary) {
 
 namespace {
 
+/// Three residuals and their sigmas, or why there are none.
+std::string valuesText(const NetworkResidual& r, const NetworkSummary& summary) {
+  if (std::isfinite(r.sigmas))
+    return fmt::format("{:>9} {:>9} {:>9} {:>8}", numberOrDash(r.residualPx.x), numberOrDash(r.residualPx.y),
+                       numberOrDash(1000 * r.residualM), numberOrDash(r.sigmas));
+  const bool lost = r.point >= 0 && !std::isfinite(summary.points[r.point].x);
+  return fmt::format("{:>38}", lost ? "point not found" : "behind the camera");
+}
+
 void writeResiduals(Out out, const Network& network, const NetworkSummary& summary) {
   constexpr std::size_t most = 60;
   std::vector<const NetworkResidual*> sorted;
@@ -112,11 +121,9 @@ void writeResiduals(Out out, const Network& network, const NetworkSummary& summa
   fmt::format_to(out, "\n  {:<20} {:<14} {:<12} {:>9} {:>9} {:>9} {:>8}\n", "Worst first", "frame", "kind", "du px", "dv px", "mm", "sigmas");
   for (std::size_t i = 0; i < std::min(most, sorted.size()); ++i) {
     const NetworkResidual& r = *sorted[i];
-    fmt::format_to(out, "  {:<20} {:<14} {:<12} {:>9} {:>9} {:>9} {:>8}{}{}\n", r.name,
+    fmt::format_to(out, "  {:<20} {:<14} {:<12} {}{}{}\n", r.name,
                    r.frame < 0 ? std::string() : network.frames[r.frame].name, residualKindName(r.kind),
-                   numberOrDash(r.residualPx.x), numberOrDash(r.residualPx.y), numberOrDash(1000 * r.residualM),
-                   numberOrDash(r.sigmas),
-                   r.outlier ? "  outlier" : "", r.heldOut ? "  held out" : "");
+                   valuesText(r, summary), r.outlier ? "  outlier" : "", r.heldOut ? "  held out" : "");
   }
   if (sorted.size() > most) fmt::format_to(out, "  … and {} more\n", sorted.size() - most);
 }

@@ -332,7 +332,7 @@ Eigen::MatrixXd NormalSystem::covariance(const std::vector<int>& wanted) const {
   at = 0;
   for (const int b : wanted)
     for (int c = 0; c < blocks[b].size; ++c, ++at) result.row(at) = columns.row(blocks[b].offset + c);
-  return 0.5 * (result + result.transpose());
+  return 0.5 * m_sigmaScale * m_sigmaScale * (result + result.transpose());
 }
 
 NormalSystem::Weakest NormalSystem::weakest() const {

@@ -42,6 +42,8 @@ class NormalSystem {
 
   /// Factors without damping, for covariance(). False where something free is left open.
   bool factorUndamped();
+  /// What the given sigmas are too small by: covariances are multiplied by its square from now on.
+  void useSigmaScale(double scale) { m_sigmaScale = scale; }
   /// Covariance of a few blocks together (rows in the blocks' order; locked rows are zero), after factorUndamped().
   Eigen::MatrixXd covariance(const std::vector<int>& blocks) const;
   /// The free parameter that is worst determined: the largest entry of the null vector, by block and column.
@@ -89,6 +91,7 @@ class NormalSystem {
   std::vector<Sums> m_worker;
   Sums m_reduced;
   double m_damping = 0;
+  double m_sigmaScale = 1;
   NormalFactor m_factor;
   Eigen::VectorXd m_step;
   std::vector<glm::dvec3> m_pointStep;

@@ -159,22 +159,24 @@ ResectionSummary refused(ResectionSummary summary, std::string reason) {
   return summary;
 }
 
+/// A posteriori standard deviation of unit weight; 0 where nothing is redundant.
+double sigma0Of(const PoseProblem& problem, const Adjusted& done) {
+  const double redundancy = 2 * static_cast<double>(done.inliers.size()) - problem.freeCount();
+  return redundancy > 0 ? std::sqrt(problem.cost(done.solution.state, done.inliers) / redundancy) : 0;
+}
+
 void describe(ResectionSummary& summary, const PoseProblem& problem, const PoseState& state, const Adjusted& done,
               const ResectionOptions& options) {
   summary.residuals = residualsAt(problem, state);
-  double squares = 0, weighted = 0;
+  double squares = 0;
   for (auto& r : summary.residuals) r.outlier = true;
   for (const int i : done.inliers) {
     ResectionResidual& r = summary.residuals[i];
     r.outlier = false;
     squares += glm::dot(r.residualPx, r.residualPx);
-    weighted += r.sigmas * r.sigmas;
   }
-  const double m = static_cast<double>(done.inliers.size());
-  summary.rmsPx = std::sqrt(squares / m);
-  const double redundancy = 2 * m - problem.freeCount();
-  summary.sigma0 = redundancy > 0 ? std::sqrt(weighted / redundancy) : 0;
-  const Matrix6& covariance = *done.covariance;
+  summary.rmsPx = std::sqrt(squares / static_cast<double>(done.inliers.size()));
+  const Matrix6 covariance = summary.sigmaScale * summary.sigmaScale * *done.covariance;
   for (int r = 0; r < 6; ++r)
     for (int c = 0; c < 6; ++c) summary.covariance[r][c] = covariance(r, c);
   for (int i = 0; i < 3; ++i) {
@@ -204,6 +206,9 @@ Result<ResectionSummary> resect(const Camera& camera, const RigidTransform& star
   ResectionSummary summary;
   summary.cameraFromWorld = startCameraFromWorld;
   if (const auto why = refusalOfInput(problem, startCameraFromWorld)) return refused(summary, *why);
+  std::vector<KnownPick> picks;
+  for (const ResectionObservation& o : observations) picks.push_back({0, o.pixel, o.world, o.name});
+  if (const auto twins = warningOfTwins(std::move(picks))) summary.warnings.push_back(*twins);
   const PoseState start = problem.startState();
   summary.residuals = residualsAt(problem, start);
 
@@ -233,15 +238,15 @@ Result<ResectionSummary> resect(const Camera& camera, const RigidTransform& star
     return refused(summary, fmt::format("The solution did not settle within {} iterations; give a better start pose",
                                         options.maximumIterations));
   if (const auto why = refusalOfGeometry(problem, done.inliers)) return refused(summary, *why);
-  if (const auto why = refusalOfWeakness(problem, done.solution.state, done.inliers, consensus.scale))
+  const double sigma0 = sigma0Of(problem, done), sigmaScale = consensus.scale > 1 ? std::max(1.0, sigma0) : 1;
+  if (const auto why = refusalOfWeakness(problem, done.solution.state, done.inliers, sigmaScale))
     return refused(summary, *why);
 
   summary.converged = true;
-  summary.cameraFromWorld = problem.pose(done.solution.state);
+  summary.sigma0 = sigma0, summary.sigmaScale = sigmaScale;
   describe(summary, problem, done.solution.state, done, options);
-  summary.reason = consensus.scale > 1
-                       ? fmt::format("Converged, but the residuals are about {:.1f} times the given sigmas", summary.sigma0)
-                       : "Converged";
+  summary.cameraFromWorld = problem.pose(done.solution.state);
+  summary.reason = reasonOfConvergence(consensus.scale > 1, summary.sigma0);
   return summary;
 }
 

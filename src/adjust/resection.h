@@ -54,6 +54,9 @@ struct ResectionSummary {
   int iterations = 0;
   double rmsPx = 0;                  ///< of the inliers
   double sigma0 = 0;                 ///< a posteriori standard deviation of unit weight
+  /// All standard deviations, the ellipse and expected errors are multiplied by it: sigma0 where the residuals are far
+  /// above the given sigmas, else 1. Never below.
+  double sigmaScale = 1;
   Covariance6 covariance{};          ///< of the camera's pose
   PositionEllipse ellipse;           ///< 95 % confidence of the camera's centre
   std::vector<std::string> correlations;  ///< pairs of parameters that can hardly be told apart, as sentences
@@ -61,6 +64,7 @@ struct ResectionSummary {
   glm::dvec3 rotationStdRad{0};
   std::vector<ResectionResidual> residuals;
   std::vector<ExpectedError> expected;  ///< one for each of Options::at
+  std::vector<std::string> warnings;    ///< one pick under several names
 
   int outlierCount() const;
   std::string report() const;        ///< a page of text

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <tuple>
 
 #include <Eigen/Eigenvalues>
 #include <fmt/format.h>
@@ -98,8 +99,8 @@ std::optional<std::string> refusalOfInput(const PoseProblem& problem, const Rigi
 std::optional<std::string> refusalOfGeometry(const PoseProblem& problem, const std::vector<int>& chosen) {
   const int needed = problem.pointsNeeded();
   if (static_cast<int>(chosen.size()) < needed)
-    return fmt::format("{} observations for {} free parameters, at least {} are needed; pick more points",
-                       chosen.size(), problem.freeCount(), needed);
+    return fmt::format("{} observations for {} free parameters, at least {} are needed{}; pick more points",
+                       chosen.size(), problem.freeCount(), needed, problem.allFree() ? " (three leave up to four poses, the fourth decides)" : "");
   const int distinct = distinctPoints(problem, chosen, needed);
   if (distinct < needed)
     return fmt::format("The {} observations are of {} different points only, at least {} are needed; the others are "
@@ -129,6 +130,24 @@ std::optional<std::string> refusalOfSide(const PoseProblem& problem, const std::
                      behind, n);
 }
 
+std::optional<std::string> warningOfTwins(std::vector<KnownPick> picks) {
+  const auto key = [](const KnownPick& p) { return std::tuple(p.frame, p.pixel.x, p.pixel.y, p.world.x, p.world.y, p.world.z); };
+  std::stable_sort(picks.begin(), picks.end(), [&](const auto& a, const auto& b) { return key(a) < key(b); });
+  int twins = 0;
+  const KnownPick* first = nullptr;
+  for (std::size_t i = 1; i < picks.size(); ++i)
+    if (key(picks[i]) == key(picks[i - 1]) && twins++ == 0) first = &picks[i];
+  if (twins == 0) return std::nullopt;
+  return fmt::format("{} the pixel and the point of another and {} twice (\"{}\" and \"{}\" first); delete one of the two",
+                     twins == 1 ? "1 observation has" : fmt::format("{} observations have", twins),
+                     twins == 1 ? "counts" : "count", (first - 1)->name, first->name);
+}
+
+double weakestPositionM(double distanceM) {
+  // From far away, a twentieth of the distance is no position any more.
+  return std::min(0.05 * distanceM, 1.0);
+}
+
 std::optional<std::string> refusalOfWeakness(const PoseProblem& problem, const PoseState& state,
                                              const std::vector<int>& chosen, double sigmaScale) {
   const auto covariance = problem.covariance(problem.normalMatrix(state, chosen));
@@ -139,7 +158,7 @@ std::optional<std::string> refusalOfWeakness(const PoseProblem& problem, const P
   const double position = sigmaScale * largestDeviation(*covariance, 0);
   const double rotation = sigmaScale * largestDeviation(*covariance, 3);
   constexpr double weakest = 0.05;
-  if (position > weakest * distance)
+  if (position > weakestPositionM(distance))
     return fmt::format("The position is undetermined: its standard deviation would be {:.3g} m with the points {:.3g} m "
                        "away; pick points that are nearer, spread over the picture and in depth, or lock the position",
                        position, distance);

@@ -24,9 +24,21 @@ std::optional<std::string> refusalOfGeometry(const PoseProblem& problem, const s
 std::optional<std::string> refusalOfSide(const PoseProblem& problem, const std::vector<int>& usable);
 
 /// A free parameter that the observations leave open, from the singular values at `state`, or from the
-/// standard deviations against the distance of the points.
+/// standard deviations: a position beyond a twentieth of the distance of the points, or beyond a metre, is none.
 std::optional<std::string> refusalOfWeakness(const PoseProblem& problem, const PoseState& state,
                                              const std::vector<int>& chosen, double sigmaScale);
+/// The largest standard deviation of a position that still is one, with what it sees so far away.
+double weakestPositionM(double distanceM);
+
+/// A known point seen at a pixel.
+struct KnownPick {
+  int frame = 0;
+  glm::dvec2 pixel{0};
+  glm::dvec3 world{0};
+  std::string name;
+};
+/// The same pixel and point under several names counts as often: a sentence, or nothing.
+std::optional<std::string> warningOfTwins(std::vector<KnownPick> picks);
 
 /// Points of one plane allow two poses (Schweighofer and Pinz 2006): looks for the second, and where it
 /// fits as well, says so. Where it fits clearly better, `state` becomes the better one.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: BSD-3-Clause
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 
 #include <fmt/format.h>
@@ -20,6 +21,7 @@ std::string ResectionSummary::report() const {
   auto out = std::back_inserter(text);
   fmt::format_to(out, "Resection: {}\n", converged ? "converged" : "refused");
   fmt::format_to(out, "  {}\n", reason);
+  for (const std::string& warning : warnings) fmt::format_to(out, "  {}\n", warning);
   const glm::dvec3 centre = cameraFromWorld.centre();
   fmt::format_to(out, "  Camera centre       E {:.4f}  N {:.4f}  H {:.4f} m\n", centre.x, centre.y, centre.z);
   if (converged) {
@@ -36,8 +38,13 @@ std::string ResectionSummary::report() const {
   if (!residuals.empty()) fmt::format_to(out, "\n  {:<20} {:>9} {:>9} {:>8}\n", "Point", "du px", "dv px", "sigmas");
   for (std::size_t i = 0; i < residuals.size(); ++i) {
     const ResectionResidual& r = residuals[i];
-    fmt::format_to(out, "  {:<20} {:>9.3f} {:>9.3f} {:>8.2f}{}\n", r.name.empty() ? fmt::format("#{}", i + 1) : r.name,
-                   r.residualPx.x, r.residualPx.y, r.sigmas, r.outlier ? "  outlier" : "");
+    const std::string name = r.name.empty() ? fmt::format("#{}", i + 1) : r.name;
+    if (!std::isfinite(r.sigmas)) {
+      fmt::format_to(out, "  {:<20} {:>28}{}\n", name, "behind the camera", r.outlier ? "  outlier" : "");
+      continue;
+    }
+    fmt::format_to(out, "  {:<20} {:>9.3f} {:>9.3f} {:>8.2f}{}\n", name, r.residualPx.x, r.residualPx.y, r.sigmas,
+                   r.outlier ? "  outlier" : "");
   }
   if (!expected.empty()) fmt::format_to(out, "\n  Expected error of the overlay, 95 %\n");
   for (const ExpectedError& e : expected)

@@ -6,10 +6,19 @@
 #include <algorithm>
 #include <cmath>
 
+#include <fmt/format.h>
+
 namespace alidade {
 
 double chanceLimit(std::size_t n) {
   return std::sqrt(2 * std::log(1e5 * static_cast<double>(std::max<std::size_t>(n, 1))));
+}
+
+std::string reasonOfConvergence(bool farAboveSigmas, double sigma0) {
+  if (!farAboveSigmas) return "Converged";
+  std::string reason = fmt::format("Converged, but the residuals are about {:.1f} times the given sigmas", sigma0);
+  if (sigma0 > 1) reason += "; all standard deviations are multiplied by that";
+  return reason;
 }
 
 Result<void> checkRobustOptions(double huberSigmas, double outlierSigmas, int maximumIterations) {

@@ -15,6 +15,9 @@ namespace alidade {
 /// P(|r| > k sigma) = exp(-k²/2). Below it, dropping one costs more than it saves.
 double chanceLimit(std::size_t n);
 
+/// "Converged", or what else is to be said of residuals far above the given sigmas.
+std::string reasonOfConvergence(bool farAboveSigmas, double sigma0);
+
 /// The options of that name in ResectionOptions and NetworkOptions.
 Result<void> checkRobustOptions(double huberSigmas, double outlierSigmas, int maximumIterations);
 

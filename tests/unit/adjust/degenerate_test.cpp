@@ -138,6 +138,26 @@ TEST(Degenerate, EverythingSoFarAwayThatThePositionIsOpen) {
   EXPECT_TRUE(summary->converged) << summary->reason;
 }
 
+TEST(Degenerate, MountainsAllOverThePictureTensOfKilometresOff) {
+  Site site = randomSite(1, 0, 0.5);
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  std::vector<glm::dvec3> points;
+  for (int i = 0; i < 12; ++i) {
+    const double z = 60000 + 30000 * unit(random);
+    points.emplace_back(0.6 * z * unit(random), 0.3 * z * unit(random), z);
+  }
+  // A thousandth of their distance, far below a twentieth: 50 m.
+  see(site, points, 0.5);
+  site.start = site.truth;
+  expectRefused(site, "The position is undetermined");
+  for (glm::dvec3& p : points) p *= 1e-3;
+  see(site, points, 0.5);
+  const auto near = resect(site.camera, site.start, site.picks);
+  ASSERT_TRUE(near);
+  EXPECT_TRUE(near->converged) << near->reason;
+}
+
 std::vector<glm::dvec3> tiltedGrid(double size, double distance, double tilt) {
   std::vector<glm::dvec3> points;
   for (int i = -1; i <= 1; ++i)

@@ -400,6 +400,49 @@ TEST(Network, OneFrameOfControlGivesTheResectionsPoseAndMillimetres) {
   EXPECT_NEAR(network.poses[0].ellipse.semiMajorM / resection->ellipse.semiMajorM, 1, 1e-3);
 }
 
+TEST(Network, TellsOnePickUnderTwoNamesAndAPointBehindTheCamera) {
+  NetworkSite site = arcSite({.controls = 12});
+  Network& n = site.network;
+  PictureObservation again = n.observations[0];
+  for (const PictureObservation& o : n.observations)
+    if (o.frame == 0 && n.points[o.point].kind == PointKind::Control) again = o;
+  NetworkPoint twin = n.points[again.point];
+  twin.name = "twin";
+  again.point = static_cast<int>(n.points.size());
+  n.points.push_back(twin);
+  n.observations.push_back(again);
+  NetworkPoint behind = twin;
+  behind.name = "behind", behind.world = site.poses[0].inverse() * glm::dvec3(1, 1, -5);
+  n.observations.push_back({0, static_cast<int>(n.points.size()), {100, 100}, 0.5, false});
+  n.points.push_back(behind);
+  const NetworkSummary summary = adjusted(n);
+  ASSERT_TRUE(summary.converged) << summary.reason;
+  const std::string report = summary.report(n);
+  EXPECT_THAT(report, HasSubstr("and \"twin\" first)"));
+  EXPECT_THAT(report, HasSubstr("behind the camera  outlier"));
+}
+
+TEST(Network, StandardDeviationsFollowResidualsFarAboveTheGivenSigmas) {
+  NetworkSite site = arcSite({.controls = 12, .noisePx = 3});
+  for (PictureObservation& o : site.network.observations) o.sigmaPx = 0.3;
+  NetworkOptions options;
+  options.at = {{0, site.points[0]}};
+  const NetworkSummary scaled = adjusted(site.network, options);
+  ASSERT_TRUE(scaled.converged) << scaled.reason;
+  EXPECT_NEAR(scaled.sigma0, 10, 1.5);
+  EXPECT_THAT(scaled.report(site.network), HasSubstr("all standard deviations are multiplied by that"));
+  for (PictureObservation& o : site.network.observations) o.sigmaPx = 0.3 * scaled.sigma0;
+  const NetworkSummary told = adjusted(site.network, options);
+  ASSERT_TRUE(told.converged) << told.reason;
+  EXPECT_EQ(told.sigmaScale, 1);
+  EXPECT_EQ(told.reason, "Converged");
+  for (std::size_t f = 0; f < told.poses.size(); ++f) {
+    for (int i = 0; i < 6; ++i) EXPECT_NEAR(scaled.poses[f].covariance[i][i] / told.poses[f].covariance[i][i], 1, 0.02);
+    EXPECT_NEAR(scaled.poses[f].ellipse.semiMajorM / told.poses[f].ellipse.semiMajorM, 1, 0.01);
+  }
+  EXPECT_NEAR(scaled.expected[0].millimetres / told.expected[0].millimetres, 1, 0.01);
+}
+
 TEST(Network, BadInputIsAnErrorWithItsReason) {
   const NetworkSite good = arcSite();
   const auto expectError = [&](auto change, const std::string& text) {
@@ -433,6 +476,12 @@ TEST(Network, RefusesWhatItsObservationsLeaveOpen) {
       EXPECT_LT(glm::length(summary->poses[i].bodyFromWorld.centre() - n.poses[i].bodyFromWorld->centre()), 1e-9);
   };
   expectRefused(arcSite({.controls = 0}).network, "singular");  // no datum at all
+  // Mountains all over the picture, a hundred kilometres off: a small part of the distance is a large error all the same.
+  NetworkSite far = arcSite({.frames = 1, .ties = 0, .controls = 20, .noisePx = 0});
+  const glm::dvec3 eye = far.poses[0].centre();
+  for (NetworkPoint& point : far.network.points) *point.world = eye + 3600.0 * (*point.world - eye);
+  far.network.poses[0].bodyFromWorld = far.poses[0];
+  expectRefused(far.network, "The position of frame \"F1\" is undetermined");
   NetworkSite few = arcSite({.frames = 1, .ties = 0, .controls = 3});
   expectRefused(few.network, "at least 4");
   NetworkSite turned = arcSite();

@@ -185,6 +185,39 @@ TEST(Resection, PicksThatAreWorseThanTheirSigmasAreUsedAndTheReasonSaysSo) {
   ASSERT_TRUE(summary->converged) << summary->reason;
   EXPECT_NEAR(summary->sigma0, 10, 3.5);
   EXPECT_THAT(summary->reason, HasSubstr("times the given sigmas"));
+  EXPECT_EQ(summary->sigmaScale, summary->sigma0);
+  // Given the sigma that the residuals show, the same picks have the same covariance.
+  Site honest = site;
+  for (auto& pick : honest.picks) pick.sigmaPx = 0.3 * summary->sigma0;
+  ResectionOptions at;
+  at.at = {site.truth.inverse() * glm::dvec3(0, 0, 23)};
+  const auto scaled = resect(site.camera, site.start, site.picks, at), told = resect(site.camera, site.start, honest.picks, at);
+  ASSERT_TRUE(scaled && told && scaled->converged && told->converged);
+  EXPECT_EQ(told->sigmaScale, 1);
+  for (int i = 0; i < 6; ++i) EXPECT_NEAR(scaled->covariance[i][i] / told->covariance[i][i], 1, 1e-3);
+  EXPECT_NEAR(scaled->ellipse.semiMajorM / told->ellipse.semiMajorM, 1, 1e-3);
+  EXPECT_NEAR(scaled->expected[0].millimetres / told->expected[0].millimetres, 1, 1e-3);
+}
+
+TEST(Resection, OnePickUnderTwoNamesIsSaid) {
+  Site site = randomSite(4, 12, 0.5);
+  const auto once = resect(site.camera, site.start, site.picks);
+  ASSERT_TRUE(once && once->converged);
+  EXPECT_TRUE(once->warnings.empty());
+  site.picks.push_back(site.picks[3]);
+  site.picks.back().name = "again";
+  const auto twice = resect(site.camera, site.start, site.picks);
+  ASSERT_TRUE(twice && twice->converged);
+  EXPECT_THAT(twice->report(), HasSubstr("1 observation has the pixel and the point of another and counts twice (\"P4\" and \"again\" first)"));
+}
+
+TEST(Resection, APointBehindTheCameraIsCalledSo) {
+  Site site = randomSite(2, 20, 0.5);
+  site.picks[7].world = site.truth.inverse() * glm::dvec3(1, 1, -5);
+  const auto summary = resect(site.camera, site.start, site.picks);
+  ASSERT_TRUE(summary && summary->converged);
+  EXPECT_THAT(summary->report(), HasSubstr("behind the camera  outlier"));
+  EXPECT_THAT(summary->report(), testing::Not(HasSubstr("nan")));
 }
 
 TEST(Resection, ExpectedMillimetresAreTheEllipseAtThePointsDepth) {
