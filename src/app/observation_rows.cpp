@@ -3,6 +3,7 @@
 
 #include "app/observation_rows.h"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -10,6 +11,7 @@
 #include <map>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 namespace alidade {
 
@@ -129,6 +131,10 @@ Result<std::optional<ObservationRow>> readRow(const Cells& cells, int line) {
     return fail(fmt::format("'{}' is no kind of observation", cells.text("kind")), cells.where(),
                 "Write control, scan, tie, edge, depth, surface or position");
   row.kind = kind->second;
+  // A surface holds its point, a position its pose: neither leaves a residual that could be looked at beside the fit.
+  if (row.heldOut && (row.kind == ObservationKind::Surface || row.kind == ObservationKind::Position))
+    return fail(fmt::format("A {} cannot be held out as a check", kind->first), cells.where(),
+                "Write use 1 to adjust with it or 0 to leave it out; points, edges and depths can be checks");
   row.frame = cells.text("frame");
   row.name = cells.text("name");
   constexpr double scanSigmaM = 0.003, surfaceSigmaM = 0.005, depthSigmaM = 0.01;
@@ -144,6 +150,29 @@ Result<std::optional<ObservationRow>> readRow(const Cells& cells, int line) {
   return row;
 }
 
+/// Where the header has each column; refuses what it does not know, so that no misspelt one is passed over.
+Result<std::map<std::string, std::size_t>> columnsOf(const std::vector<std::string>& header, const std::string& path) {
+  static constexpr std::array known{"u",    "v",   "e",       "n",  "h",  "sigma_px", "name",   "frame",
+                                    "kind", "use", "sigma_m", "e2", "n2", "h2",       "depth_m"};
+  if (header.size() == 1)
+    for (const auto& [separator, name] : {std::pair{';', "semicolons"}, {'\t', "tabs"}})
+      if (header[0].find(separator) != std::string::npos)
+        return fail(fmt::format("The columns are separated by {}", name), path, "Separate them by commas, and write numbers with a decimal point");
+  std::map<std::string, std::size_t> column;
+  for (std::size_t i = 0; i < header.size(); ++i) {
+    const std::string name = lowered(header[i]);
+    if (name.empty()) return fail(fmt::format("Column {} has no name", i + 1), path, kAdvice);
+    if (std::find(known.begin(), known.end(), name) == known.end())
+      return fail(fmt::format("There is no column '{}'", header[i]), path,
+                  fmt::format("The columns are {}{}", fmt::join(known, ", "),
+                              name == "sigma" ? "; a pick's standard deviation is sigma_px, a point's sigma_m" : ""));
+    if (!column.emplace(name, i).second) return fail(fmt::format("The column '{}' comes twice", name), path, "Delete one of the two");
+  }
+  for (const char* needed : {"u", "v", "e", "n", "h"})
+    if (!column.contains(needed)) return fail(fmt::format("The column '{}' is missing", needed), path, kAdvice);
+  return column;
+}
+
 }  // namespace
 
 Result<std::vector<ObservationRow>> readObservationRows(const std::string& path) {
@@ -151,6 +180,7 @@ Result<std::vector<ObservationRow>> readObservationRows(const std::string& path)
   if (!file) return fail("The observations cannot be opened", path, "Check that the file exists and may be read");
   std::string line;
   std::map<std::string, std::size_t> column;
+  std::size_t columnCount = 0;
   std::vector<ObservationRow> rows;
   for (int lineNumber = 1; std::getline(file, line); ++lineNumber) {
     if (line.size() > 65536) return fail("A line is longer than 65536 characters", path, kAdvice);
@@ -158,12 +188,16 @@ Result<std::vector<ObservationRow>> readObservationRows(const std::string& path)
     if (trimmed(line).empty() || line.front() == '#') continue;
     auto cells = cellsOf(line);
     if (column.empty()) {
-      for (std::size_t i = 0; i < cells.size(); ++i) column[lowered(cells[i])] = i;
-      for (const char* needed : {"u", "v", "e", "n", "h"})
-        if (!column.contains(needed)) return fail(fmt::format("The column '{}' is missing", needed), path, kAdvice);
+      auto columns = columnsOf(cells, path);
+      if (!columns) return fail(columns.error());
+      column = std::move(*columns), columnCount = cells.size();
       continue;
     }
-    auto row = readRow(Cells(column, std::move(cells), fmt::format("{}, line {}", path, lineNumber)), lineNumber);
+    const std::string where = fmt::format("{}, line {}", path, lineNumber);
+    if (cells.size() != columnCount)
+      return fail(fmt::format("The row has {} cells, the header {}", cells.size(), columnCount), where,
+                  "Give every row a cell for each column, empty where nothing is to be said; write numbers with a decimal point, names without commas");
+    auto row = readRow(Cells(column, std::move(cells), where), lineNumber);
     if (!row) return fail(row.error());
     if (*row) rows.push_back(std::move(**row));
   }

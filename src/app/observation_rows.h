@@ -39,7 +39,8 @@ struct ObservationRow {
 
 /// CSV with a header of columns in any order: u,v,e,n,h[,sigma_px][,name][,frame][,kind][,use][,sigma_m][,e2,n2,h2][,depth_m].
 /// `kind` is control (as without it), scan, tie, edge, depth, surface or position; `use` 1 (as without it), 0: the row is
-/// skipped, or check: held out. Every error names file and line.
+/// skipped, or check: held out (points, edges and depths). Unknown and repeated
+/// columns and rows of another length than the header are refused. Every error names file and line.
 Result<std::vector<ObservationRow>> readObservationRows(const std::string& path);
 
 }  // namespace alidade

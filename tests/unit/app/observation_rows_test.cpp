@@ -1,8 +1,10 @@
 // SPDX-FileCopyrightText: 2026 the Alidade authors
 // SPDX-License-Identifier: BSD-3-Clause
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -22,11 +24,21 @@ std::string write(const std::string& text) {
 
 constexpr const char* header = "u,v,e,n,h,name,frame,kind,use,sigma_m,e2,n2,h2,depth_m\n";
 
+/// The header and these rows, each filled up with empty cells.
+std::string withHeader(const std::string& rows) {
+  const std::string first = header;
+  const auto columns = std::count(first.begin(), first.end(), ',');
+  std::string all = first, line;
+  for (std::istringstream lines(rows); std::getline(lines, line);)
+    all += line + std::string(columns - std::count(line.begin(), line.end(), ','), ',') + '\n';
+  return all;
+}
+
 TEST(ObservationRows, EveryKindIsRead) {
-  const auto rows = readObservationRows(write(std::string(header) + "10,20,1,2,3,C1,A,control,1,0.01\n11,21,4,5,6,S1,A,scan\n"
+  const auto rows = readObservationRows(write(withHeader("10,20,1,2,3,C1,A,control,1,0.01\n11,21,4,5,6,S1,A,scan\n"
                                               "12,22,,,,T1,A,tie\n13,23,,,,T1,B,tie,check\n14,24,1,2,3,E1,A,edge,1,,4,5,6\n"
                                               ",,,,,T1,A,depth,1,0.02,,,,7.5\n,,1,2,3,T1,,surface,1,,0,0,1\n,,9,9,9,,A,position,1,0.05\n"
-                                              "99,99,9,9,9,off,A,control,0\n"));
+                                              "99,99,9,9,9,off,A,control,0\n")));
   ASSERT_TRUE(rows) << rows.error().text();
   ASSERT_EQ(rows->size(), 8u) << "use 0 is skipped";
   EXPECT_DOUBLE_EQ((*rows)[0].sigmaM, 0.01);
@@ -44,12 +56,31 @@ TEST(ObservationRows, BadRowsNameTheirLine) {
   for (const auto& [row, text] : {std::pair{"1,2,3,4,5,P,A,star", "no kind of observation"}, {"1,2,3,4,5,P,A,control,maybe", "use is"},
                                   {"1,2,3,4,5,P,A,edge", "e2, n2 and h2"}, {"1,2,,,,,A,tie", "no name"},
                                   {"1,2,3,4,,P,A,control", "e, n, h must be finite"}, {"1,2,3,4,5,P,A,scan,1,-1", "sigma_m"},
-                                  {",,,,,P,A,depth", "depth_m"}, {"nan,2,3,4,5,P,A,scan", "u, v must be finite"}}) {
-    const auto rows = readObservationRows(write(std::string(header) + row + "\n"));
+                                  {",,,,,P,A,depth", "depth_m"}, {"nan,2,3,4,5,P,A,scan", "u, v must be finite"}, {",,9,9,9,P,A,position,check", "position cannot be held out"},
+                                  {",,1,2,3,T1,,surface,check,,0,0,1", "surface cannot be held out"}}) {
+    const auto rows = readObservationRows(write(withHeader(row)));
     ASSERT_FALSE(rows) << row;
     EXPECT_THAT(rows.error().text(), HasSubstr(text));
     EXPECT_THAT(rows.error().where, HasSubstr("line 2"));
   }
+}
+
+TEST(ObservationRows, ColumnsAndCellsThatNobodyWouldReadAreRefused) {
+  const auto expectRefused = [](const std::string& text, const std::string& reason) {
+    const auto rows = readObservationRows(write(text));
+    ASSERT_FALSE(rows) << text;
+    EXPECT_THAT(rows.error().text(), HasSubstr(reason));
+  };
+  expectRefused("u,v,e,n,h,sigma,name\n1,2,3,4,5,0.3,P\n", "no column 'sigma'");
+  expectRefused("u,v,e,n,h,sigma,name\n1,2,3,4,5,0.3,P\n", "is sigma_px");
+  expectRefused("u,v,e,n,h,colour\n1,2,3,4,5,red\n", "The columns are u, v, e, n, h, sigma_px, name");
+  expectRefused("u,v,e,n,h,\n1,2,3,4,5,\n", "Column 6 has no name");
+  expectRefused("u,v,e,n,h,U\n1,2,3,4,5,6\n", "The column 'u' comes twice");
+  expectRefused("u,v,e,n,h,name\n1,2,3,4,5,P\n1,5,2,3,4,5,P\n", "line 3");
+  expectRefused("u,v,e,n,h,name\n1,5,2,3,4,5,P\n", "7 cells, the header 6");
+  expectRefused("u,v,e,n,h,name\n1,2,3,4,5\n", "5 cells, the header 6");
+  expectRefused("u;v;e;n;h;name\n1,5;2;3;4;5;P\n", "separated by semicolons");
+  expectRefused("u\tv\te\tn\th\n1\t2\t3\t4\t5\n", "separated by tabs");
 }
 
 Project twoFrames() {
@@ -67,7 +98,7 @@ Project twoFrames() {
 }
 
 TEST(ObservationRows, MakeOneNetworkOverTheFramesTheyName) {
-  const auto rows = readObservationRows(write(std::string(header) + "10,20,1,2,3,C1,A,control\n12,22,,,,T1,A,tie\n13,23,,,,T1,B,tie\n,,1,2,3,T1,,surface,1,,0,0,1\n"));
+  const auto rows = readObservationRows(write(withHeader("10,20,1,2,3,C1,A,control\n12,22,,,,T1,A,tie\n13,23,,,,T1,B,tie\n,,1,2,3,T1,,surface,1,,0,0,1\n")));
   ASSERT_TRUE(rows);
   const auto made = networkOf(twoFrames(), "", *rows, {});
   ASSERT_TRUE(made) << made.error().text();
@@ -79,7 +110,7 @@ TEST(ObservationRows, MakeOneNetworkOverTheFramesTheyName) {
 
 TEST(ObservationRows, WhatContradictsItselfIsRefused) {
   const auto expectRefused = [](const std::string& text, const std::string& reason) {
-    const auto rows = readObservationRows(write(header + text));
+    const auto rows = readObservationRows(write(withHeader(text)));
     ASSERT_TRUE(rows) << rows.error().text();
     const auto made = networkOf(twoFrames(), "", *rows, {});
     ASSERT_FALSE(made) << text;
