@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <fmt/format.h>
 
@@ -35,6 +36,22 @@ std::optional<Twist> motionOverFrames(const Project& project, const Frame& frame
   const PoseTrack track(std::move(samples));
   const double span = track.samples().back().timeSecs - track.samples().front().timeSecs;
   return track.motionAt(0.5 * (track.samples().back().timeSecs + track.samples().front().timeSecs), span * (1 - 1e-12));
+}
+
+/// Refuses an offset with which none of the frames that the trajectory serves has a pose.
+Result<void> checkOffsetMeets(const Project& project, const Trajectory& trajectory, double offsetSecs) {
+  double first = std::numeric_limits<double>::infinity(), last = -first;
+  for (const Frame& frame : project.frames) {
+    if (frame.trajectory != trajectory.id) continue;
+    if (trajectory.track.at(frame.timeSecs + offsetSecs).cameraFromWorld) return {};
+    first = std::min(first, frame.timeSecs), last = std::max(last, frame.timeSecs);
+  }
+  const auto& samples = trajectory.track.samples();
+  if (first > last || samples.empty()) return {};
+  return fail(fmt::format("With a clock offset of {:g} s no frame has a pose", offsetSecs), trajectory.name,
+              fmt::format("The frames are of {:.3f} to {:.3f} s, the poses of {:.3f} to {:.3f} s: give an offset between {:.3f} and {:.3f} s",
+                          first, last, samples.front().timeSecs, samples.back().timeSecs, samples.front().timeSecs - last,
+                          samples.back().timeSecs - first));
 }
 
 }  // namespace
@@ -69,6 +86,7 @@ Result<PoseCount> setClockOffset(Project& project, TrajectoryId id, double offse
   Trajectory* trajectory = project.findTrajectory(id);
   if (!trajectory) return fail("The project has no such trajectory", project.path, "Add one: a TUM or EuRoC file of timed poses");
   if (!std::isfinite(offsetSecs)) return fail("The clock offset is no time", project.path, "Give seconds");
+  if (auto meets = checkOffsetMeets(project, *trajectory, offsetSecs); !meets) return fail(meets.error());
   trajectory->clockOffsetSecs = offsetSecs;
   trajectory->clockOffsetStdSecs = stdSecs;
   return poseFromTrajectory(project, id);

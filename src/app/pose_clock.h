@@ -25,8 +25,8 @@ std::string poseCountText(const PoseCount& count);
 /// refined pose stays; a frame where the trajectory has none loses the one it had from it.
 PoseCount poseFromTrajectory(Project& project, TrajectoryId trajectory);
 
-/// The same with another offset; `stdSecs` where it was estimated. Error where the project has no such trajectory or
-/// the offset is no time; the project is unchanged then.
+/// The same with another offset; `stdSecs` where it was estimated. Error where the project has no such trajectory,
+/// the offset is no time, or none of the trajectory's frames would have a pose; the project is unchanged then.
 Result<PoseCount> setClockOffset(Project& project, TrajectoryId trajectory, double offsetSecs,
                                  std::optional<double> stdSecs = {});
 

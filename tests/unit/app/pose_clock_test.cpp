@@ -67,7 +67,13 @@ TEST(PoseClock, AnOffsetMovesEveryPoseAlongTheTrajectory) {
   EXPECT_LT(offBy(project.frames[30], 30 / 10.3 + 0.25), kScrewM);
   EXPECT_EQ(project.trajectories[0].clockOffsetStdSecs, 0.001);
   EXPECT_FALSE(setClockOffset(project, id, std::nan("")));
+  for (const double never : {1e300, -1e300, 6.1, -5.1}) {
+    const auto refused = setClockOffset(project, id, never);
+    ASSERT_FALSE(refused) << never;
+    EXPECT_THAT(refused.error().text(), testing::HasSubstr("between -4.757 and 6.000 s"));
+  }
   EXPECT_EQ(project.trajectories[0].clockOffsetSecs, 0.25) << "a refusal changes nothing";
+  EXPECT_LT(offBy(project.frames[30], 30 / 10.3 + 0.25), kScrewM);
   EXPECT_FALSE(setClockOffset(project, TrajectoryId{99}, 0));
 }
 
