@@ -4,7 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <optional>
+#include <tuple>
+
+#include <fmt/format.h>
 
 #include "app/jobs.h"
 #include "app/pose_matching.h"
@@ -15,6 +19,7 @@
 #include "io/rig_file.h"
 #include "io/video_writer.h"
 #include "plugin_api/euroc_sensor.h"
+#include "plugin_api/picture_header.h"
 #include "simulate/camera_path.h"
 #include "simulate/pose_writer.h"
 
@@ -190,7 +195,7 @@ class Assembler {
     const auto reader = ReaderRegistry::instance().find(path);
     if (!reader) return fail(reader.error());
     switch ((*reader)->kind()) {
-      case ReaderKind::Scan: return addScan(path);
+      case ReaderKind::Scan: return addScanWithPictures(path);
       case ReaderKind::Design: return addDesign(path);
       case ReaderKind::Pictures: return addPicturesWithSidecars(path);
       case ReaderKind::Cameras: return addCameras(path);
@@ -206,6 +211,7 @@ class Assembler {
     std::stable_sort(project().frames.begin(), project().frames.end(),
                      [](const Frame& a, const Frame& b) { return a.timeSecs < b.timeSecs; });
     noteDistance();
+    noteSizes();
     if (!m_cameras.empty() && project().frames.empty())
       m_outcome.notes.push_back("Cameras and poses are of no use without pictures: add the pictures or the video they belong to");
     return std::move(m_outcome);
@@ -220,6 +226,21 @@ class Assembler {
     std::error_code ignored;
     const bool sidecars = std::filesystem::is_directory(path, ignored) && ReaderRegistry::instance().findAs<CameraReader>(path);
     if (auto added = addPictures(path); !added || !sidecars) return added;
+    return addCameras(path);
+  }
+
+  /// A file of scans may hold pictures and their cameras as well (E57).
+  Result<void> addScanWithPictures(const std::string& path) {
+    const auto pictures = ReaderRegistry::instance().findAs<PictureReader>(path);
+    if (!pictures || !(*pictures)->inspect(path)) return addScan(path);
+    const auto& videos = project().videos;
+    const std::string full = absolute(path);
+    if (std::any_of(videos.begin(), videos.end(), [&](const Video& video) { return video.source.path == full; })) return addScan(path);
+    // One of pictures alone is no scan that failed.
+    const auto scan = addScan(path);
+    if (!scan) m_outcome.notes.push_back("No scan was taken from " + path + ": " + scan.error().what);
+    if (auto added = addPictures(path); !added) return added;
+    if (!ReaderRegistry::instance().findAs<CameraReader>(path)) return {};
     return addCameras(path);
   }
 
@@ -239,7 +260,7 @@ class Assembler {
     video.framesPerSecond = set.framesPerSecond;
     video.frameCount = static_cast<std::int64_t>(set.pictures.size());
     for (std::size_t i = 1; i < set.pictures.size(); ++i) {
-      if (set.pictures[i].timeSecs > set.pictures[i - 1].timeSecs) continue;
+      if (set.framesPerSecond == 0 || set.pictures[i].timeSecs > set.pictures[i - 1].timeSecs) continue;
       m_outcome.notes.push_back("The time stamps of " + path + " do not rise at frame " + std::to_string(i) +
                                 ": poses cannot be laid on them. Give it times of its own: alidade-cli clock --rate or --times");
       break;
@@ -253,6 +274,8 @@ class Assembler {
       frame.videoFrame = static_cast<std::int64_t>(i);
       project().frames.push_back(std::move(frame));
     }
+    // The pictures of a scan may differ in size, those of a video do not.
+    if (set.framesPerSecond > 0) m_videoSizes[video.id.value] = {set.width, set.height};
     project().videos.push_back(std::move(video));
     return {};
   }
@@ -323,7 +346,25 @@ class Assembler {
     }
   }
 
+  /// By the first picture of each camera: a calibration of another size is another camera's, or one of scaled pictures.
+  void noteSizes() {
+    for (const CameraRecord& camera : project().cameras) {
+      const auto& frames = project().frames;
+      const auto first = std::find_if(frames.begin(), frames.end(), [&](const Frame& f) { return f.camera == camera.id; });
+      if (first == frames.end()) continue;
+      int width = 0, height = 0;
+      if (const auto video = m_videoSizes.find(first->video.value); first->video && video != m_videoSizes.end())
+        std::tie(width, height) = video->second;
+      else if (const auto header = first->image.path.empty() ? Result<PictureHeader>(PictureHeader{}) : readPictureHeader(first->image.path))
+        width = header->width, height = header->height;
+      if (width == 0 || (width == camera.camera.width() && height == camera.camera.height())) continue;
+      m_outcome.notes.push_back(fmt::format("The picture {} has {}×{} pixels, its calibration '{}' is for {}×{}. Use the calibration of this picture size",
+                                            first->name, width, height, camera.name, camera.camera.width(), camera.camera.height()));
+    }
+  }
+
   Progress m_progress;
+  std::map<std::int64_t, std::pair<int, int>> m_videoSizes;
   NewProjectOutcome m_outcome;
   std::vector<CameraSource> m_cameras;
   std::int64_t m_nextFrame = 0;

@@ -259,17 +259,20 @@ std::vector<Frame*> framesOf(Project& project, const CameraSource& source) {
 }
 
 void noteGaps(const Project& project, std::vector<std::string>& notes) {
-  std::size_t poseless = 0, cameraless = 0;
+  std::size_t poseless = 0, cameraless = 0, lensless = 0;
   for (const Frame& frame : project.frames) {
     poseless += !frame.cameraFromWorld;
     cameraless += !frame.camera;
+    lensless += frame.cameraFromWorld && !frame.camera;
   }
   if (poseless > 0)
     notes.push_back(count(poseless, "picture has", "pictures have") +
-                    " no pose. Add cameras that name it, or a trajectory that covers its time");
+                    " no pose. Add cameras that name " + (poseless == 1 ? "it" : "them") + ", or a trajectory that covers " +
+                    (poseless == 1 ? "its time" : "their times"));
   if (cameraless > 0)
     notes.push_back(count(cameraless, "picture has", "pictures have") +
-                    " no camera. Add a calibration: a COLMAP model or an OpenCV calibration file");
+                    " no camera" + (lensless == 0 ? "" : lensless == cameraless ? ": the pose is there, the lens is missing" : "") +
+                    ". Add a calibration: a COLMAP model or an OpenCV calibration file");
 }
 
 }  // namespace

@@ -51,8 +51,11 @@ void addNew(Verbs& verbs) {
           made->notes.push_back("The project holds no scan, no design and no picture. Give --scan, --design, --images or --video");
         if (auto saved = saveProject(project, arguments->project); !saved) return fail(saved.error());
 
-        std::size_t posed = 0;
-        for (const Frame& frame : project.frames) posed += frame.cameraFromWorld && frame.camera;
+        std::size_t posed = 0, withoutLens = 0;
+        for (const Frame& frame : project.frames) {
+          posed += frame.cameraFromWorld.has_value();
+          withoutLens += !frame.camera;
+        }
         Answer answer;
         answer.json = {{"project", arguments->project},
                        {"scans", project.scans.size()},
@@ -60,12 +63,15 @@ void addNew(Verbs& verbs) {
                        {"cameras", project.cameras.size()},
                        {"frames", project.frames.size()},
                        {"frames_with_pose", posed},
+                       {"frames_without_camera", withoutLens},
                        {"stake_points", project.stakePoints.size()},
                        {"control_points", project.controlPoints.size()},
                        {"notes", made->notes}};
-        answer.text = fmt::format("{}: {} scans, {} designs, {} frames ({} with a pose), {} stake-out points\n",
-                                  arguments->project, project.scans.size(), project.designs.size(), project.frames.size(),
-                                  posed, project.stakePoints.size());
+        const auto counted = [](std::size_t n, const char* what) { return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s"); };
+        answer.text = fmt::format("{}: {}, {}, {} ({} with a pose{}), {}\n", arguments->project, counted(project.scans.size(), "scan"),
+                                  counted(project.designs.size(), "design"), counted(project.frames.size(), "frame"), posed,
+                                  withoutLens == 0 ? std::string() : fmt::format(", {} without a lens", withoutLens),
+                                  counted(project.stakePoints.size(), "stake-out point"));
         for (const std::string& note : made->notes) answer.text += "  note: " + note + "\n";
         return answer;
       });
