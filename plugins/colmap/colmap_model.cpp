@@ -121,7 +121,7 @@ void ColmapModel::addSighting(std::int64_t image, std::int64_t feature, const st
 
 CameraSet ColmapModel::take() {
   m_noCamera.tell(m_set.warnings, "images are of a camera that the model lacks");
-  m_nameTwice.tell(m_set.warnings, "image names come twice");
+  m_nameTwice.tell(m_set.warnings, m_nameTwice.count == 1 ? "image name comes twice" : "image names come twice");
   m_noPoints.tell(m_set.warnings, "images have no line of points");
   m_dangling.tell(m_set.warnings, "sightings of points are in images or features that the model lacks");
   return std::move(m_set);

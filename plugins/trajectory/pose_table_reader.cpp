@@ -227,7 +227,7 @@ Result<CameraSet> parsePoseTable(std::string_view text, const std::string& path,
   });
   if (!read) return fail(read.error());
   if (set.pictures.empty()) return fail("The table holds no pose", path, kAdvice);
-  twice.tell(set.warnings, "names come twice");
+  twice.tell(set.warnings, twice.count == 1 ? "name comes twice" : "names come twice");
   if (layout->unitAssumed) set.warnings.push_back({"The header names no unit of the angles: degrees are assumed", path});
   set.details = fmt::format("Table of poses: {} with {}", set.pictures.size(), kindWords(layout->kind));
   return set;

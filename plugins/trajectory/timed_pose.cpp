@@ -37,12 +37,14 @@ Result<void> TrajectoryBuilder::add(double timeSecs, const glm::dvec3& position,
 Result<CameraSet> TrajectoryBuilder::take(const std::string& formatName, const std::string& path) {
   if (m_set.pictures.empty()) return fail("The file holds no pose", path, "Export the trajectory again");
   m_unsorted.tell(m_set.warnings, "times are out of order; the poses were sorted by time");
-  m_twice.tell(m_set.warnings, "times come twice in a row");
+  m_twice.tell(m_set.warnings, m_twice.count == 1 ? "time comes twice in a row" : "times come twice in a row");
   m_unnormalised.tell(m_set.warnings, "quaternions are not of unit length; they were normalised");
   std::stable_sort(m_set.pictures.begin(), m_set.pictures.end(),
                    [](const PosedPicture& a, const PosedPicture& b) { return a.timeSecs < b.timeSecs; });
+  // Rounded, and a negative nothing made a nothing.
+  const auto shown = [](const PosedPicture& picture) { return std::round(picture.timeSecs * 1000) / 1000 + 0.0; };
   m_set.details = fmt::format("{}: {} poses from {:.3f} s to {:.3f} s", formatName, m_set.pictures.size(),
-                              m_set.pictures.front().timeSecs, m_set.pictures.back().timeSecs);
+                              shown(m_set.pictures.front()), shown(m_set.pictures.back()));
   return std::move(m_set);
 }
 
