@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the Alidade authors
 // SPDX-License-Identifier: BSD-3-Clause
 
+#include <cctype>
 #include <filesystem>
 
 #include <fmt/format.h>
@@ -22,6 +23,13 @@ const char* formatName(CameraFormat format) {
   return "";
 }
 
+/// A name with an ending of letters, of nothing that is there: hardly meant as a folder.
+bool looksLikeFile(const std::string& path) {
+  std::error_code error;
+  const std::string ending = std::filesystem::path(path).extension().string();
+  return ending.size() > 1 && std::isalpha(static_cast<unsigned char>(ending[1])) && !std::filesystem::is_directory(path, error);
+}
+
 /// Of a folder, the model in it counts.
 bool isThere(const std::string& path, CameraFormat format) {
   std::error_code error;
@@ -41,6 +49,9 @@ void addExportCameras(Verbs& verbs) {
       "export-cameras", "Write cameras and poses for other programs: COLMAP, transforms.json, CSV",
       [arguments](const Progress&) -> Result<Answer> {
         const CameraFormat format = cameraFormatOf(arguments->output);
+        if (format == CameraFormat::Colmap && looksLikeFile(arguments->output))
+          return fail("Cameras are not written as '" + std::filesystem::path(arguments->output).extension().string() + "'", arguments->output,
+                      "Name a file .json or .csv, or a folder (with a slash behind it where its name has a full stop) for COLMAP's text files");
         if (!arguments->overwrite && isThere(arguments->output, format))
           return fail("The target exists already", arguments->output, "Choose another name, or give --overwrite to replace it");
         const auto project = loadProject(arguments->project);
