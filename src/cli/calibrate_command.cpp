@@ -130,7 +130,8 @@ void addCalibrate(Verbs& verbs) {
   command->add_option("-o,--output", arguments->output, "Calibration file: .yml, .xml or .json as OpenCV's, .txt as COLMAP's");
   command->add_option("--report", arguments->report, "Figures, residual plot and coverage as .pdf, .html or .png");
   command->add_flag("--plain", arguments->plain, "Plain least squares over all corners, wrong ones too");
-  command->add_option("--board-sigma", arguments->boardSigma, "Metres by which the print may be off: the board's corners are adjusted, too");
+  command->add_option("--board-sigma", arguments->boardSigma, "Metres by which the print may be off: the board's corners are adjusted, too")
+      ->check(finiteNumber());
   command->add_option("--held-out-parts", arguments->parts, "Parts in which the pictures are left out for the check; 0: no check")
       ->capture_default_str();
   command->add_option("--project", arguments->project, "Project that the calibration is given to");

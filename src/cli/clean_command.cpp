@@ -122,9 +122,9 @@ void addClean(Verbs& verbs) {
       ->check(checkedBy([](const std::string& text) { return parsePair(text, true); }, "K,S"));
   command->add_option("--radius", arguments->radius, "METRES,NEIGHBOURS that a point must have around it, such as 0.1,4")
       ->check(checkedBy([](const std::string& text) { return parsePair(text, false); }, "R,K"));
-  command->add_option("--voxel", arguments->voxel, "Keep one point in each cube of this edge, metres")->check(CLI::PositiveNumber);
+  command->add_option("--voxel", arguments->voxel, "Keep one point in each cube of this edge, metres")->check(positiveNumber());
   command->add_flag("--ground", arguments->ground, "Classify ground points (class 2)");
-  command->add_option("--ground-window", arguments->window, "Widest thing on the ground, metres")->check(CLI::PositiveNumber);
+  command->add_option("--ground-window", arguments->window, "Widest thing on the ground, metres")->check(positiveNumber());
   command->add_flag("--normals", arguments->normals, "Estimate normals, towards the scan's stations");
   command->add_flag("--overwrite", arguments->overwrite, "Replace the output where it is there");
 }
@@ -135,8 +135,8 @@ void addRegister(Verbs& verbs) {
                                 [arguments](const Progress& progress) { return runRegister(*arguments, progress); });
   command->add_option("moving", arguments->moving, "Scan to move")->required();
   command->add_option("fixed", arguments->fixed, "Scan that stays")->required();
-  command->add_option("--reach", arguments->options.reachMeters, "How far apart they may be, metres")->check(CLI::PositiveNumber);
-  command->add_option("--share", arguments->options.leastShare, "Least share of the moving points in the overlap, 0 to 1")->check(CLI::Range(0.01, 1.0));
+  command->add_option("--reach", arguments->options.reachMeters, "How far apart they may be, metres")->check(positiveNumber());
+  command->add_option("--share", arguments->options.leastShare, "Least share of the moving points in the overlap, 0 to 1")->check(numberWithin(0.01, 1.0));
 }
 
 void addMesh(Verbs& verbs) {
@@ -145,9 +145,9 @@ void addMesh(Verbs& verbs) {
                                 [arguments](const Progress& progress) { return runMesh(*arguments, progress); });
   command->add_option("scan", arguments->scan, "Scan to read")->required();
   command->add_option("-o,--output", arguments->output, "PLY or OBJ to write")->required();
-  CLI::Option* greedy = command->add_option("--greedy", arguments->greedy, "Join neighbours by edges of at most this length, metres")->check(CLI::PositiveNumber);
+  CLI::Option* greedy = command->add_option("--greedy", arguments->greedy, "Join neighbours by edges of at most this length, metres")->check(positiveNumber());
   command->add_option("--poisson", arguments->poisson, "Poisson reconstruction, depth of its octree, such as 9")->check(CLI::Range(2, 13))->excludes(greedy);
-  command->add_option("--voxel", arguments->voxel, "Thin first: one point in each cube of this edge, metres")->check(CLI::PositiveNumber);
+  command->add_option("--voxel", arguments->voxel, "Thin first: one point in each cube of this edge, metres")->check(positiveNumber());
   command->add_flag("--overwrite", arguments->overwrite, "Replace the output where it is there");
 }
 

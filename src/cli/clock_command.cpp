@@ -1,6 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the Alidade authors
 // SPDX-License-Identifier: BSD-3-Clause
 
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "app/clock_estimation.h"
@@ -40,7 +42,8 @@ Json jsonOf(const ClockOffset& estimate) {
 }
 
 std::string textOf(const Trajectory& trajectory) {
-  std::string text = fmt::format("{}: clock offset {:+.4f} s", trajectory.name, trajectory.clockOffsetSecs);
+  // Rounded, and a negative nothing made a nothing.
+  std::string text = fmt::format("{}: clock offset {:+.4f} s", trajectory.name, std::round(trajectory.clockOffsetSecs * 1e4) / 1e4 + 0.0);
   if (trajectory.clockOffsetStdSecs) text += fmt::format(" ± {:.4f} s", *trajectory.clockOffsetStdSecs);
   return text + " (pose clock minus picture clock)\n";
 }
@@ -114,16 +117,16 @@ void addClock(Verbs& verbs) {
                                 [arguments](const Progress& progress) { return run(*arguments, progress); });
   command->add_option("project", arguments->project, "Project file")->required();
   command->add_option("--trajectory", arguments->trajectory, "Name, where the project has several");
-  auto* offset = command->add_option("--offset", arguments->offset, "Pose clock minus picture clock, seconds");
+  auto* offset = command->add_option("--offset", arguments->offset, "Pose clock minus picture clock, seconds")->check(finiteNumber());
   auto* estimate = command->add_flag("--estimate", arguments->estimate, "Find the offset from what moves in the pictures");
   offset->excludes(estimate);
-  command->add_option("--range", arguments->range, "Seconds to either side that --estimate searches")->check(CLI::Range(0.05, 3600.0))->capture_default_str();
+  command->add_option("--range", arguments->range, "Seconds to either side that --estimate searches")->check(numberWithin(0.05, 3600.0))->capture_default_str();
   auto* times = command->add_option("--times", arguments->times, "Table of the frames' times: time, or name,time a line");
-  auto* rate = command->add_option("--rate", arguments->rate, "Frames a second, instead of the times that the video has")->check(CLI::Range(0.001, 100'000.0));
+  auto* rate = command->add_option("--rate", arguments->rate, "Frames a second, instead of the times that the video has")->check(numberWithin(0.001, 100'000.0));
   times->excludes(rate);
-  command->add_option("--start", arguments->start, "Time of the first frame with --rate, seconds")->needs(rate);
+  command->add_option("--start", arguments->start, "Time of the first frame with --rate, seconds")->needs(rate)->check(finiteNumber());
   command->add_option("--readout", arguments->readoutMs, "Milliseconds that the cameras take to read their rows (rolling shutter); 0: all at once")
-      ->check(CLI::Range(-200.0, 200.0));
+      ->check(numberWithin(-200.0, 200.0));
   command->add_flag("--dry-run", arguments->dryRun, "Report only; leave the project as it is");
 }
 

@@ -3,10 +3,13 @@
 
 #include "cli/command.h"
 
+#include <charconv>
+#include <cmath>
 #include <csignal>
 #include <cstdio>
 #include <iostream>
 
+#include <fmt/format.h>
 #include <unistd.h>
 
 namespace alidade::cli {
@@ -90,6 +93,36 @@ class QuietOutput {
 };
 
 }  // namespace
+
+namespace {
+
+/// What is said of a text that is no finite number, or of a number that `isRight` does not take.
+CLI::Validator numberChecked(std::function<bool(double)> isRight, const std::string& wanted, const std::string& name) {
+  return CLI::Validator(
+      [=](std::string& text) {
+        double value = 0;
+        const char* begin = text.data() + (text.starts_with('+') ? 1 : 0);
+        const auto [end, error] = std::from_chars(begin, text.data() + text.size(), value);
+        const bool number = error == std::errc() && end == text.data() + text.size() && std::isfinite(value);
+        return number && isRight(value) ? std::string() : fmt::format("'{}' is no {}", text, wanted);
+      },
+      name);
+}
+
+}  // namespace
+
+CLI::Validator finiteNumber() {
+  return numberChecked([](double) { return true; }, "finite number", "NUMBER");
+}
+
+CLI::Validator positiveNumber() {
+  return numberChecked([](double value) { return value > 0; }, "finite number above 0", "POSITIVE");
+}
+
+CLI::Validator numberWithin(double low, double high) {
+  return numberChecked([=](double value) { return value >= low && value <= high; }, fmt::format("number from {} to {}", low, high),
+                       fmt::format("{} to {}", low, high));
+}
 
 int Verbs::run() const {
   for (const Entry& entry : m_entries) {

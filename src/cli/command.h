@@ -59,6 +59,11 @@ CLI::Validator checkedBy(Parse parse, const std::string& name) {
       name);
 }
 
+/// For CLI11's check() of every option that is a number with a point: CLI11's own checks let nan pass.
+CLI::Validator finiteNumber();
+CLI::Validator positiveNumber();
+CLI::Validator numberWithin(double low, double high);
+
 void addCalibrate(Verbs& verbs);
 void addClean(Verbs& verbs);
 void addClock(Verbs& verbs);

@@ -40,9 +40,10 @@ void addDemo(Verbs& verbs) {
   command->add_option("--width", arguments->options.width, "Width of a frame, pixels")->check(CLI::Range(16, 8192));
   command->add_option("--height", arguments->options.height, "Height of a frame, pixels")->check(CLI::Range(16, 8192));
   command->add_flag("--video", arguments->video, "The project is of an H.264 video with a trajectory, not of pictures");
-  command->add_option("--clock-offset", arguments->options.clockOffsetSecs, "Trajectory's clock minus the video's, seconds");
+  command->add_option("--clock-offset", arguments->options.clockOffsetSecs, "Trajectory's clock minus the video's, seconds")
+      ->check(finiteNumber());
   command->add_option("--readout", arguments->readoutMs, "Milliseconds that the camera takes to read its rows (rolling shutter)")
-      ->check(CLI::Range(-60.0, 60.0));
+      ->check(numberWithin(-60.0, 60.0));
   command->add_flag("--gray", arguments->gray, "A grayscale camera");
 }
 

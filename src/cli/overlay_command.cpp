@@ -240,15 +240,15 @@ void addOverlay(Verbs& verbs) {
   command->add_option("project", arguments->project, "Project file")->required();
   auto* which = command->add_option_group("which frame");
   which->add_option("--frame", arguments->frame, "Name, or index from 0");
-  which->add_option("--time", arguments->time, "Seconds: the frame nearest to it");
+  which->add_option("--time", arguments->time, "Seconds: the frame nearest to it")->check(finiteNumber());
   which->add_option("--frames", arguments->range, "FIRST:LAST[:STEP], indices from 0: a video (.mp4), or a folder of pictures")
       ->check(checkedBy(parseRange, "RANGE"));
   which->require_option(1);
-  command->add_option("-o,--output", arguments->output, "PNG to write; MP4 or folder with --range")->required();
-  command->add_option("--density", arguments->density, "Point density, 0 to 1")->check(CLI::Range(0.0, 1.0));
+  command->add_option("-o,--output", arguments->output, "PNG to write; MP4 or folder with --frames")->required();
+  command->add_option("--density", arguments->density, "Point density, 0 to 1")->check(numberWithin(0.0, 1.0));
   command->add_option("--threshold", arguments->threshold, "What is thinned by one distance: a node, a point, or all alike")
       ->check(CLI::IsMember({"node", "point", "uniform"}));
-  command->add_option("--point-size", arguments->pointSize, "Factor on the automatic point size")->check(CLI::Range(0.1, 20.0));
+  command->add_option("--point-size", arguments->pointSize, "Factor on the automatic point size")->check(numberWithin(0.1, 20.0));
   command->add_option("--passes", arguments->passes, "Of image,depth,design,points")
       ->check(checkedBy([](const std::string& list) { DisplaySettings ignored; return applyPasses(list, ignored); }, "LIST"));
   command->add_option("--hidden", arguments->hidden, "Parts that the scan hides")->check(CLI::IsMember({"hide", "ghost", "dash"}));

@@ -107,6 +107,12 @@ TEST(Clock, SaysWhatItLacks) {
   EXPECT_THAT(without.errors, HasSubstr("trajector"));
   EXPECT_EQ(alidadeCli("clock --estimate --offset 1 " + quoted(video())).exitCode, 2);
   EXPECT_EQ(alidadeCli("clock --rate 0 " + quoted(video())).exitCode, 2);
+  for (const char* option : {"--offset nan", "--offset inf", "--rate nan", "--readout nan", "--estimate --range nan", "--rate 15 --start nan"})
+    EXPECT_EQ(alidadeCli(std::string("clock ") + option + " " + quoted(video())).exitCode, 2) << option;
+  const auto far = alidadeCli("clock --offset 1e300 " + quoted(video()));
+  EXPECT_EQ(far.exitCode, 1);
+  EXPECT_THAT(far.errors, HasSubstr("no frame has a pose"));
+  EXPECT_EQ(alidadeCli("clock --json " + quoted(video())).json()["frames_posed"], 30);
   EXPECT_EQ(alidadeCli("clock --trajectory other " + quoted(video())).exitCode, 1);
 }
 
