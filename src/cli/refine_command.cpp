@@ -119,7 +119,7 @@ Json jsonOf(const Project& project, const NetworkRefinement& refinement, const N
   const Network& network = refinement.network;
   Json json = {{"converged", summary.converged}, {"reason", summary.reason}, {"iterations", summary.iterations},
                {"initial_cost", summary.initialCost}, {"final_cost", summary.finalCost}, {"sigma0", summary.sigma0},
-               {"redundancy", summary.redundancy}};
+               {"sigma_scale", summary.sigmaScale}, {"redundancy", summary.redundancy}};
   Json frames = Json::array(), groups = Json::array(), residuals = Json::array(), outliers = Json::array(), checks = Json::array();
   for (std::size_t i = 0; i < network.frames.size(); ++i) {
     const AdjustedPose& pose = summary.poses[network.frames[i].pose];
@@ -157,10 +157,11 @@ Json jsonOf(const Project& project, const NetworkRefinement& refinement, const N
 
 Json jsonOf(const ResectionSummary& summary, bool dryRun) {
   Json json = {{"converged", summary.converged}, {"reason", summary.reason}, {"iterations", summary.iterations},
-               {"rms_px", summary.rmsPx}, {"sigma0", summary.sigma0}, {"position_std_m", vec(summary.positionStdM)},
+               {"rms_px", summary.rmsPx}, {"sigma0", summary.sigma0}, {"sigma_scale", summary.sigmaScale}, {"position_std_m", vec(summary.positionStdM)},
                {"rotation_std_rad", vec(summary.rotationStdRad)}};
   json["ellipse_95"] = ellipseOf(summary.ellipse);
   json["correlations"] = summary.correlations;
+  json["warnings"] = summary.warnings;
   json["expected_error_mm"] = expectedOf(summary.expected);
   Json outliers = Json::array(), residuals = Json::array();
   for (const ResectionResidual& r : summary.residuals) {
@@ -247,8 +248,6 @@ Result<Answer> run(const Arguments& arguments, const Progress& progress) {
       return fail("One rotation alone cannot be locked here", "--lock", "Lock attitude as a whole, or refine from observations");
     if (freedom.focal || freedom.principalPoint || freedom.distortion)
       return fail("A calibration is not adjusted from alignments", "--free", "Free rig or clock here, or refine from observations");
-    if (arguments.automatic && freedom.ties.any())
-      return fail("One frame alone has no rig and no clock", "--auto", "Refine a --sequence");
     return runPictures(arguments, options, freedom.ties, progress);
   }
   for (const std::string& text : arguments.at) {
@@ -285,26 +284,34 @@ void addRefine(Verbs& verbs) {
                       "without it, those that the project keeps");
   command->add_option("--lock", arguments->lock, "Of position,attitude,x,y,z,rx,ry,rz (rotations about the camera's axes)")
       ->check(checkedBy([](const std::string& list) { NetworkFreedom ignored; return applyLocks(list, ignored); }, "LIST"));
-  command->add_option("--free", arguments->free, "Of focal,principal-point,distortion,rig,clock, beside the poses")
+  auto* free = command->add_option("--free", arguments->free, "Of focal,principal-point,distortion,rig,clock, beside the poses")
       ->check(checkedBy([](const std::string& list) { NetworkFreedom ignored; return applyFree(list, ignored); }, "LIST"));
-  command->add_flag("--rig", arguments->rig, "Cameras with pictures of the same moments sit on one body, as the poses say; --free rig adjusts where");
-  command->add_flag("--trajectory", arguments->trajectory, "Hold the poses to their trajectories; --free clock adjusts the clock offset, too");
-  command->add_option("--at", arguments->at, "E,N,H where the expected error is wanted")
+  auto* rig = command->add_flag("--rig", arguments->rig, "Cameras with pictures of the same moments sit on one body, as the poses say; --free rig adjusts where");
+  auto* trajectory = command->add_flag("--trajectory", arguments->trajectory, "Hold the poses to their trajectories; --free clock adjusts the clock offset, too");
+  auto* at = command->add_option("--at", arguments->at, "E,N,H where the expected error is wanted")
       ->check(checkedBy(parsePoint, "POINT"));
-  command->add_flag("--auto", arguments->automatic,
+  auto* automatic = command->add_flag("--auto", arguments->automatic,
                     "Align --frame, or every frame with a pose, with the scans or the designs: from up to 3 degrees and 0.3 m off")
-      ->excludes(command->get_option("--observations"));
-  command->add_flag("--sequence", arguments->sequence,
+      ->excludes(command->get_option("--observations"))
+      ->excludes(at)->excludes(free)->excludes(rig)->excludes(trajectory);
+  auto* sequence = command->add_flag("--sequence", arguments->sequence,
                     "Align all frames with the scans and adjust them together: tie points, smooth motion, alarm where a fixed camera moved")
-      ->excludes("--auto", "--observations", "--frame");
+      ->excludes("--auto", "--observations", "--frame")
+      ->excludes(at);
   command->add_option("--keyframes", arguments->keyframes, "With --sequence: align every so many frames; those between follow")
-      ->check(CLI::Range(1, 10000));
-  command->add_option("--within", arguments->withinPx, "With --auto and --sequence: the 95 % error, pixels of 1920 across, up to which a pose is believed")
-      ->check(CLI::Range(0.05, 50.0));
-  command->add_option("--to", arguments->to, "With --auto and --sequence: what to align with; scan, where one is visible, else design")
+      ->check(CLI::Range(1, 10000))
+      ->needs(sequence);
+  auto* within = command->add_option("--within", arguments->withinPx, "With --auto and --sequence: the 95 % error, pixels of 1920 across, up to which a pose is believed")
+      ->check(numberWithin(0.05, 50.0));
+  auto* to = command->add_option("--to", arguments->to, "With --auto and --sequence: what to align with; scan, where one is visible, else design")
       ->transform(CLI::CheckedTransformer(std::map<std::string, AlignTo>{{"scan", AlignTo::Scans}, {"design", AlignTo::Designs}}))
       ->excludes("--observations");
   command->add_flag("--dry-run", arguments->dryRun, "Report only; leave the project as it is");
+  command->parse_complete_callback([=] {
+    for (const CLI::Option* option : {within, to})
+      if (option->count() > 0 && automatic->count() + sequence->count() == 0)
+        throw CLI::RequiresError(option->get_name(), "--auto or --sequence");
+  });
 }
 
 }  // namespace alidade::cli

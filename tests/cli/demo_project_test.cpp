@@ -105,6 +105,18 @@ TEST(CommandLine, ADegenerateSetIsRefusedWithItsReasonAndTheProjectUnchanged) {
   EXPECT_FALSE(outcome.json()["saved"]);
 }
 
+TEST(CommandLine, RefineRefusesOptionsThatItWouldNotHeed) {
+  const std::string rows = " --observations " + quoted(smallDemo() / "observations.csv");
+  for (const std::string& options : {std::string("--auto --at 1,2,3"), std::string("--auto --free rig"), std::string("--auto --rig"),
+                                     std::string("--auto --trajectory"), std::string("--sequence --at 1,2,3"), std::string("--auto --keyframes 5"),
+                                     "--keyframes 5" + rows, "--within 2" + rows, std::string("--within 2"), std::string("--to scan"),
+                                     std::string("--auto --within nan")}) {
+    const auto outcome = alidadeCli("refine --dry-run " + options + " " + demoProject());
+    EXPECT_EQ(outcome.exitCode, 2) << options;
+    EXPECT_NE(outcome.errors.find("--"), std::string::npos) << outcome.errors;
+  }
+}
+
 TEST(CommandLine, AlignsAFrameWithTheDesignAndSaysWhatItKnows) {
   const auto aligned = alidadeCli("refine --json --auto --to design --frame 0 --within 3 --dry-run " + demoProject());
   ASSERT_EQ(aligned.exitCode, 0) << aligned.errors << aligned.output;
@@ -230,6 +242,33 @@ TEST(CommandLine, NewSaysWhatIsThereTwiceAndWhatIsMissing) {
   ASSERT_EQ(twice.json()["notes"].size(), 1u) << twice.output;
   EXPECT_NE(twice.json()["notes"][0].get<std::string>().find("already"), std::string::npos);
   EXPECT_EQ(alidadeCli("new --json " + quoted(scratch() / "bare.alidade")).json()["notes"].size(), 1u);
+}
+
+TEST(CommandLine, NewSaysWhereALensIsMissingOrOfAnotherPictureSize) {
+  const auto poses = scratch() / "poses.csv", lens = scratch() / "lens.yml", images = smallDemo() / "images";
+  ASSERT_EQ(alidadeCli("export-cameras " + demoProject() + " -o " + quoted(poses)).exitCode, 0);
+  const std::string common = " --images " + quoted(images) + " --cameras " + quoted(poses);
+  const auto without = alidadeCli("new " + quoted(scratch() / "lensless.alidade") + common);
+  ASSERT_EQ(without.exitCode, 0) << without.errors;
+  EXPECT_NE(without.output.find("4 frames (4 with a pose, 4 without a lens)"), std::string::npos) << without.output;
+  EXPECT_NE(without.output.find("the lens is missing"), std::string::npos) << without.output;
+  // The pictures are of 480 × 360.
+  std::ofstream(lens) << "%YAML:1.0\n---\nimage_width: 1280\nimage_height: 960\ncamera_matrix: !!opencv-matrix\n   rows: 3\n   cols: 3\n"
+                         "   dt: d\n   data: [ 560., 0, 640., 0, 560., 480., 0, 0, 1 ]\ndistortion_coefficients: !!opencv-matrix\n"
+                         "   rows: 5\n   cols: 1\n   dt: d\n   data: [ 0., 0., 0., 0., 0. ]\n";
+  const auto wrong = alidadeCli("new " + quoted(scratch() / "wronglens.alidade") + common + " " + quoted(lens));
+  ASSERT_EQ(wrong.exitCode, 0) << wrong.errors;
+  EXPECT_NE(wrong.output.find("4 frames (4 with a pose), "), std::string::npos) << wrong.output;
+  EXPECT_NE(wrong.output.find("has 480×360 pixels, its calibration 'lens' is for 1280×960"), std::string::npos) << wrong.output;
+}
+
+TEST(CommandLine, CamerasAreExportedToWhatTheEndingSaysOrAFolder) {
+  const auto refused = alidadeCli("export-cameras " + demoProject() + " -o " + quoted(scratch() / "cameras.xyz"));
+  EXPECT_EQ(refused.exitCode, 1);
+  EXPECT_NE(refused.errors.find(".json or .csv"), std::string::npos) << refused.errors;
+  EXPECT_FALSE(std::filesystem::exists(scratch() / "cameras.xyz"));
+  EXPECT_EQ(alidadeCli("export-cameras " + demoProject() + " -o " + quoted(scratch() / "cameras.v2/")).exitCode, 0);
+  EXPECT_TRUE(std::filesystem::exists(scratch() / "cameras.v2" / "cameras.txt"));
 }
 
 TEST(CommandLine, AMissingSourceIsNamed) {

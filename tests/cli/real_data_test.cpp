@@ -149,6 +149,18 @@ TEST(Info, RefusesAnUnreadSchemaByName) {
   EXPECT_NE(outcome.output.find("IFC4X3"), std::string::npos) << outcome.output;
 }
 
+// A file that anyone drops in brings all that it holds.
+TEST(E57, ItsPicturesAndTheirCamerasComeWithTheFile) {
+  const auto e57 = sharedData("e57");
+  if (e57.empty()) GTEST_SKIP() << "the E57 files are not here";
+  const auto made = alidadeCli("new --json " + quoted(scratch() / "e57.alidade") + " --files " +
+                               quoted(e57 / "self" / "PinholeImageWithDistortionParameters.e57"));
+  ASSERT_EQ(made.exitCode, 0) << made.errors << made.output;
+  EXPECT_EQ(made.json()["scans"], 1);
+  EXPECT_EQ(made.json()["frames"], 3);
+  EXPECT_EQ(made.json()["cameras"], 1);
+}
+
 // Metashape's own export in place of the COLMAP model: the same pose, the same lens, so the same pixels.
 TEST(Road, MetashapesXmlAndItsColmapModelSeeTheSamePixels) {
   const auto road = sharedData("road");
