@@ -132,7 +132,13 @@ void ClockPanel::setOffset() {
   if (!its || m_offset->value() == its->clockOffsetSecs) return;
   const TrajectoryId id = its->id;
   m_answer->clear();
-  m_session.change(tr("Set clock offset"), [&](Project& project) { setClockOffset(project, id, m_offset->value()); });
+  Project changed = *m_session.project();
+  if (const auto set = setClockOffset(changed, id, m_offset->value()); !set) {
+    m_session.messages().error(set.error());
+    m_offset->setValue(its->clockOffsetSecs);
+    return;
+  }
+  m_session.change(tr("Set clock offset"), [&](Project& project) { project = changed; });
 }
 
 void ClockPanel::setReadout() {
