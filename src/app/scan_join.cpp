@@ -83,15 +83,21 @@ class Columns {
   std::vector<ExtraColumn> m_extra;
 };
 
+/// "EPSG:2056+5728" beside "EPSG:2056": the same plane, and one that says what the heights are.
+bool addsHeights(const std::string& crs, const std::string& plane) {
+  return !plane.empty() && crs.starts_with(plane + "+");
+}
+
 /// What is said of all scans together.
 Result<ScanInfo> describeAll(const std::vector<ScanSource>& scans) {
   ScanInfo all = scans.front().info;
   bool same = true;
   for (std::size_t i = 1; i < scans.size(); ++i) {
     const ScanInfo& info = scans[i].info;
-    if (!info.crs.empty() && !all.crs.empty() && info.crs != all.crs)
+    const bool agrees = info.crs.empty() || all.crs.empty() || info.crs == all.crs || addsHeights(info.crs, all.crs) || addsHeights(all.crs, info.crs);
+    if (!agrees)
       return fail("The scans are in different coordinate systems", scans[i].name, "Transform them into one first");
-    if (all.crs.empty()) all.crs = info.crs;
+    if (all.crs.empty() || addsHeights(info.crs, all.crs)) all.crs = info.crs;
     same = same && info.scale == all.scale && info.offset == all.offset;
     all.bounds.add(info.bounds);
     all.pointCount += info.pointCount;

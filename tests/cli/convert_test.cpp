@@ -150,6 +150,23 @@ TEST(Convert, WhatAFileSaysBesideItsPointsGoesThroughAStore) {
   }
 }
 
+TEST(Convert, AScanThatSaysItsHeightsSystemJoinsOneThatDoesNot) {
+  const auto scanOf = [](const std::string& name, std::uint16_t plane, std::uint16_t heights) {
+    testing::LasFileMaker file(2, 0, 20);
+    file.addVlr("LASF_Projection", 34735,
+                heights > 0 ? testing::LasFileMaker::geoKeys({{1024, 1}, {3072, plane}, {4096, heights}})
+                            : testing::LasFileMaker::geoKeys({{1024, 1}, {3072, plane}}));
+    for (int i = 0; i < 10; ++i) file.addPoint(i, i, i);
+    return file.write(name);
+  };
+  const fs::path plain = scanOf("plain.las", 2056, 0), high = scanOf("high.las", 2056, 5728), other = scanOf("other.las", 25832, 0);
+  const fs::path both = scratch() / "both.las";
+  const auto joined = alidadeCli("convert " + quoted(plain) + ' ' + quoted(high) + " -o " + quoted(both));
+  ASSERT_EQ(joined.exitCode, 0) << joined.errors;
+  EXPECT_EQ(infoOf(both)["crs"], "EPSG:2056+5728");
+  EXPECT_EQ(alidadeCli("convert " + quoted(plain) + ' ' + quoted(other) + " -o " + quoted(scratch() / "never.las")).exitCode, 1);
+}
+
 TEST(Convert, FloatingCoordinatesAreWrittenInFineSteps) {
   const fs::path text = scratch() / "fine.xyz", las = scratch() / "fine.las";
   std::ofstream(text) << "2683512.12345678 1247811.98765432 413.1\n2683514.5 1247813.25 414.12345678\n";
