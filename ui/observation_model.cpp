@@ -21,6 +21,10 @@ QString kindName(ObservedKind kind) {
       return ObservationModel::tr("tie");
     case ObservedKind::Edge:
       return ObservationModel::tr("edge");
+    case ObservedKind::Depth:
+      return ObservationModel::tr("depth");
+    case ObservedKind::Surface:
+      return ObservationModel::tr("surface");
   }
   return {};
 }
@@ -40,6 +44,7 @@ void ObservationModel::refresh() {
     for (Observation& seen : m_refinement.observations(m_refinement.scope())) {
       Row row;
       row.residual = m_refinement.residual(seen);
+      row.residualM = m_refinement.residualM(seen);
       row.outlier = m_refinement.isOutlier(seen.id);
       if (const Frame* frame = m_session.project()->findFrame(seen.frame)) row.frame = text(frame->name);
       row.seen = std::move(seen);
@@ -69,6 +74,8 @@ QString ObservationModel::words(const Row& row, int column) const {
     case Name:
       return (row.outlier ? QStringLiteral("▲ ") : QString()) + text(seen.name);
     case Residual:
+      if (row.residualM) return formatMillimetres(std::abs(*row.residualM));
+      if (!seen.hasPixel()) return {};
       return row.residual ? QString::number(glm::length(*row.residual), 'f', 2) : tr("not seen");
     case Across:
       return row.residual ? QString::number(row.residual->x, 'f', 2) : QString();
@@ -77,6 +84,8 @@ QString ObservationModel::words(const Row& row, int column) const {
     case Kind:
       return kindName(seen.kind);
     case Place:
+      if (seen.kind == ObservedKind::Depth) return formatDistance(seen.depthM);
+      if (!seen.hasPixel()) return {};
       return QStringLiteral("%1, %2").arg(seen.pixel.x, 0, 'f', 2).arg(seen.pixel.y, 0, 'f', 2);
     case FrameName:
       return row.frame;
@@ -89,6 +98,8 @@ QVariant ObservationModel::sortKey(const Row& row, int column) const {
   const double unseen = 1e9;  // what is not seen at all is worst
   switch (column) {
     case Residual:
+      // Metres cannot be compared with pixels: they stand together, before all others.
+      if (!row.seen.hasPixel()) return (row.residualM ? std::abs(*row.residualM) : -1) - unseen;
       return row.residual ? glm::length(*row.residual) : unseen;
     case Across:
       return row.residual ? row.residual->x : unseen;
@@ -97,7 +108,7 @@ QVariant ObservationModel::sortKey(const Row& row, int column) const {
     case Check:
       return row.seen.heldOut;
     case Place:
-      return row.seen.pixel.x;
+      return row.seen.hasPixel() ? row.seen.pixel.x : row.seen.depthM - unseen;
     default:
       return words(row, column);
   }
@@ -109,11 +120,12 @@ QVariant ObservationModel::data(const QModelIndex& index, int role) const {
   if (role == Qt::DisplayRole) return words(row, column);
   if (role == kSortRole) return sortKey(row, column);
   if (role == Qt::CheckStateRole && column == Name) return row.seen.enabled ? Qt::Checked : Qt::Unchecked;
-  if (role == Qt::CheckStateRole && column == Check) return row.seen.heldOut ? Qt::Checked : Qt::Unchecked;
+  if (role == Qt::CheckStateRole && column == Check && row.seen.kind != ObservedKind::Surface) return row.seen.heldOut ? Qt::Checked : Qt::Unchecked;
   if (role == Qt::TextAlignmentRole && (column == Residual || column == Across || column == Down || column == Place))
     return QVariant(Qt::AlignRight | Qt::AlignVCenter);
   if (role == Qt::ToolTipRole)
-    return tr("%1 in %2: %3 px, %4").arg(text(row.seen.name), row.frame, words(row, Residual), formatWorld(row.seen.world)) +
+    return (row.seen.hasPixel() ? tr("%1 in %2: %3 px, %4").arg(text(row.seen.name), row.frame, words(row, Residual), formatWorld(row.seen.world))
+                                : tr("%1, %2 ± %3").arg(text(row.seen.name), kindName(row.seen.kind), formatMillimetres(row.seen.sigmaM))) +
            (row.outlier ? tr("\nAn outlier: it took no part. Leave it out or pick it again") : QString());
   return {};
 }
@@ -128,7 +140,9 @@ bool ObservationModel::setData(const QModelIndex& index, const QVariant& value, 
 }
 
 Qt::ItemFlags ObservationModel::flags(const QModelIndex& index) const {
-  const Qt::ItemFlags tick = index.column() == Name || index.column() == Check ? Qt::ItemIsUserCheckable : Qt::NoItemFlags;
+  const bool canBeCheck = m_rows[static_cast<std::size_t>(index.row())].seen.kind != ObservedKind::Surface;
+  const bool ticks = index.column() == Name || (index.column() == Check && canBeCheck);
+  const Qt::ItemFlags tick = ticks ? Qt::ItemIsUserCheckable : Qt::NoItemFlags;
   return Qt::ItemIsEnabled | Qt::ItemIsSelectable | tick;
 }
 
@@ -137,11 +151,11 @@ QVariant ObservationModel::headerData(int section, Qt::Orientation orientation, 
   static const char* const names[] = {QT_TR_NOOP("Point"), QT_TR_NOOP("px"),   QT_TR_NOOP("Δu"),   QT_TR_NOOP("Δv"),
                                       QT_TR_NOOP("Check"), QT_TR_NOOP("Kind"), QT_TR_NOOP("u, v"), QT_TR_NOOP("Frame")};
   static const char* const tips[] = {QT_TR_NOOP("Ticked: takes part"),
-                                     QT_TR_NOOP("Residual: fitted - observed, pixels"),
+                                     QT_TR_NOOP("Residual: fitted - observed, pixels; of a depth millimetres"),
                                      QT_TR_NOOP("Residual to the right, pixels"),
                                      QT_TR_NOOP("Residual downwards, pixels"),
                                      QT_TR_NOOP("Ticked: takes no part, only its residual is shown"),
-                                     QT_TR_NOOP("A known point, a scan point, a tie point, an edge"),
+                                     QT_TR_NOOP("A known point, a scan point, a tie point, an edge; the depth of a point, the surface that holds one"),
                                      QT_TR_NOOP("Where it was observed, pixels"),
                                      QT_TR_NOOP("The frame it was observed in")};
   if (role == Qt::DisplayRole) return tr(names[section]);

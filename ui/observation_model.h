@@ -36,6 +36,7 @@ class ObservationModel : public QAbstractTableModel {
   struct Row {
     Observation seen;
     std::optional<glm::dvec2> residual;
+    std::optional<double> residualM;
     QString frame;
     bool outlier = false;
   };

@@ -187,18 +187,11 @@ void PoseRefinement::refine() {
   RefineTask task;
   task.freedom = m_freedom;
   task.frame = m_session.currentFrame()->name;
-  Project used = *m_session.project();
-  std::erase_if(used.observations, [&](const Observation& o) {
-    const bool elsewhere = m_scope == RefinementScope::Frame && o.frame != m_session.frame();
-    // One frame alone cannot place an unknown point.
-    const bool loose = m_scope == RefinementScope::Frame && o.kind == ObservedKind::Tie;
-    return elsewhere || loose;
-  });
-  task.rows = observationRowsOf(used);
+  task.rows = observationRowsOf(*m_session.project(), m_scope == RefinementScope::Frame ? m_session.frame() : FrameId());
   glm::dvec3 middle(0);
   double points = 0;
-  for (const Observation& o : used.observations)
-    if (o.enabled) middle = glm::mix(middle, o.world, 1 / ++points);
+  for (const ObservationRow& row : task.rows)
+    if (row.kind != ObservationKind::Depth && row.world) middle = glm::mix(middle, *row.world, 1 / ++points);
   // The expected millimetres are wanted where the work is.
   task.judgedAt = m_judgedAt.value_or(middle);
   const QString name = m_scope == RefinementScope::Frame ? tr("Refine pose of %1").arg(text(task.frame)) : tr("Refine poses");
@@ -289,11 +282,15 @@ void PoseRefinement::forgetSummaries() {
   m_outliers.clear();
 }
 
+std::optional<double> PoseRefinement::residualM(const Observation& observation) const {
+  return depthResidualM(m_candidate ? *m_candidate : *m_session.project(), observation);
+}
+
 std::optional<glm::dvec2> PoseRefinement::residual(const Observation& observation) const {
   const Project& project = m_candidate ? *m_candidate : *m_session.project();
   const Frame* frame = project.findFrame(observation.frame);
   const CameraRecord* camera = frame ? project.findCamera(frame->camera) : nullptr;
-  if (!camera || !frame->cameraFromWorld) return std::nullopt;
+  if (!camera || !frame->cameraFromWorld || !observation.hasPixel()) return std::nullopt;
   const auto pixel = fittedPixel(camera->camera, shutterOf(project, *frame), *frame->cameraFromWorld, observation);
   if (!pixel) return std::nullopt;
   return *pixel - observation.pixel;

@@ -63,6 +63,8 @@ class PoseRefinement : public QObject {
   bool isOutlier(ObservationId id) const { return m_outliers.contains(id); }
   /// Fitted - observed at the pose now shown; nothing where it is not seen.
   std::optional<glm::dvec2> residual(const Observation& observation) const;
+  /// The same of a depth, metres: farther than observed.
+  std::optional<double> residualM(const Observation& observation) const;
 
  signals:
   void changed();

@@ -178,6 +178,16 @@ void PropertiesPanel::showFrame() {
                         .arg(QString::fromUtf8(model.data(), static_cast<qsizetype>(model.size())))
                         .arg(in.fx, 0, 'f', 1));
     row(tr("Picture"), QStringLiteral("%1 × %2 px").arg(in.width).arg(in.height));
+    if (camera->mount && camera->mount->body != camera->name) {
+      const glm::dvec3 at = camera->mount->cameraFromBody.centre();
+      row(tr("Mounted"), tr("%1, %2, %3 m on %4")
+                             .arg(at.x, 0, 'f', 4)
+                             .arg(at.y, 0, 'f', 4)
+                             .arg(at.z, 0, 'f', 4)
+                             .arg(text(camera->mount->body)));
+      if (const glm::dvec3 std = camera->mount->offsetStdM; std != glm::dvec3(0))
+        row(tr("σ mounting"), QStringLiteral("%1, %2, %3").arg(formatMillimetres(std.x), formatMillimetres(std.y), formatMillimetres(std.z)));
+    }
   }
   if (frame->cameraFromWorld) row(tr("Stands at"), stackedWorld(frame->cameraFromWorld->centre()));
   if (frame->quality) {

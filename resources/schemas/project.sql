@@ -64,6 +64,12 @@ CREATE TABLE video (
   frames_per_second, frame_count
 );
 
+-- Since version 5: where cameras sit on the body that carries them.
+CREATE TABLE camera_mount (
+  position INTEGER PRIMARY KEY, camera, body, qw, qx, qy, qz, tx, ty, tz,
+  std_tx_m, std_ty_m, std_tz_m, std_x_rad, std_y_rad, std_z_rad
+);
+
 -- Since version 3: cameras that read row by row, videos whose times are not the container's, trajectories with
 -- their clocks (pose clock minus picture clock) and the frames that they serve. `camera`, `video`, `frame` and
 -- trajectory_pose.trajectory are positions, frame_trajectory.trajectory is an id.
@@ -108,7 +114,7 @@ CREATE TABLE control_point (
 );
 
 CREATE TABLE observation (
-  position INTEGER PRIMARY KEY, id, frame, kind, u_px, v_px, e, n, h, e2, n2, h2, sigma_px, sigma_m, name,
+  position INTEGER PRIMARY KEY, id, frame, kind, u_px, v_px, e, n, h, e2, n2, h2, depth_m, sigma_px, sigma_m, name,
   enabled, held_out
 );
 

@@ -165,7 +165,9 @@ class Assembler {
       if (!mounting) return fail(mounting.error());
       const std::size_t before = project().frames.size();
       if (auto added = addPictures(camera.pictures); !added) return added;
-      CameraSource source{path, rigCameraSet(*trajectory, *mounting, calibration->cameras.front(), rig->timeOffsetSecs), {}};
+      CameraSource source{path, rigCameraSet(*trajectory, *mounting, calibration->cameras.front(), rig->timeOffsetSecs)};
+      source.name = camera.name;
+      source.mount = CameraMount{stemOf(rig->trajectory), mounting->inverse()};
       for (std::size_t i = before; i < project().frames.size(); ++i) {
         Frame& frame = project().frames[i];
         if (camera.rateHz) frame.timeSecs = camera.startSecs + static_cast<double>(i - before) / *camera.rateHz;

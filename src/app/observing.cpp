@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "app/pose_clock.h"
 #include "targets/mark_match.h"
 
 namespace alidade {
@@ -95,6 +96,22 @@ std::optional<glm::dvec2> fittedPixel(const Camera& camera, const RollingShutter
   return nearestOnLine(camera, shutter, cameraFromWorld, seen.world, seen.edgeEnd, -0.5, 1.5, seen.pixel);
 }
 
+std::optional<double> depthResidualM(const Project& project, const Observation& depth) {
+  const Frame* frame = depth.kind == ObservedKind::Depth ? project.findFrame(depth.frame) : nullptr;
+  const CameraRecord* camera = frame ? project.findCamera(frame->camera) : nullptr;
+  if (!camera || !frame->cameraFromWorld) return std::nullopt;
+  const Observation* point = nullptr;
+  for (const Observation& o : project.observations) {
+    const bool known = o.kind == ObservedKind::Control || o.kind == ObservedKind::Scan;
+    if (known && o.name == depth.name && (!point || o.frame == depth.frame)) point = &o;
+  }
+  if (!point) return std::nullopt;
+  const RigidTransform pose = point->frame != depth.frame
+                                  ? *frame->cameraFromWorld
+                                  : shutterOf(project, *frame).poseAtRow(*frame->cameraFromWorld, point->pixel.y, camera->camera.height());
+  return (pose * point->world).z - depth.depthM;
+}
+
 std::optional<DesignSnap> designCornerAt(const FrameDescription& frame, const glm::dvec2& pixel, double radiusPx) {
   std::optional<DesignSnap> best;
   double bestDepth = 0;
@@ -132,8 +149,8 @@ std::optional<DesignSnap> designEdgeAt(const FrameDescription& frame, const glm:
 
 Result<MatchedObservations> matchInOtherFrames(const Project& project, const Observation& seen, PictureCache& pictures,
                                                const Progress& progress) {
-  if (seen.kind == ObservedKind::Edge)
-    return fail("An edge has no place along it that could be found again", seen.name, "Choose a point");
+  if (seen.kind == ObservedKind::Edge || !seen.hasPixel())
+    return fail("Only a point that was seen in the picture can be found again", seen.name, "Choose a point");
   const Frame* own = project.findFrame(seen.frame);
   const CameraRecord* ownCamera = own ? project.findCamera(own->camera) : nullptr;
   if (!ownCamera || !own->cameraFromWorld) return fail("The frame of '" + seen.name + "' has no camera or no pose", project.path);
@@ -141,7 +158,7 @@ Result<MatchedObservations> matchInOtherFrames(const Project& project, const Obs
   if (!reference) return fail(reference.error());
   std::set<FrameId> done;
   for (const Observation& o : project.observations)
-    if (o.name == seen.name) done.insert(o.frame);
+    if (o.name == seen.name && o.hasPixel()) done.insert(o.frame);
 
   MatchedObservations made;
   ObservationId id = nextObservationId(project);

@@ -25,6 +25,9 @@ std::string freePointName(const Project& project, const std::string& prefix);
 std::optional<glm::dvec2> fittedPixel(const Camera& camera, const RollingShutter& shutter, const RigidTransform& cameraFromWorld,
                                       const Observation& seen);
 
+/// Of a depth of a known point: how much farther away than observed its frame's pose has it, metres.
+std::optional<double> depthResidualM(const Project& project, const Observation& depth);
+
 /// A corner, or an edge, of the design next to a pixel as the pose shows it.
 struct DesignSnap {
   std::string name;  ///< of its element

@@ -78,7 +78,9 @@ CameraId SetCameras::add(const Intrinsics& intrinsics, int index) {
   CameraRecord record;
   record.id = nextCameraId(m_project);
   record.name = m_source.set.cameras.size() == 1 ? stem : stem + " " + std::to_string(index + 1);
+  if (!m_source.name.empty()) record.name = m_source.name;
   record.camera = Camera(intrinsics);
+  record.mount = m_source.mount;
   const CameraId id = record.id;
   m_project.cameras.push_back(std::move(record));
   return id;

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -16,6 +17,8 @@ struct CameraSource {
   std::string path;
   CameraSet set;
   std::vector<FrameId> only = {};  ///< the frames that it may serve (a rig's camera); all where empty
+  std::string name = {};           ///< of its only camera; the file's where empty
+  std::optional<CameraMount> mount = {};
 };
 
 /// A sensor's trajectory as that of a camera on it: cameraFromWorld = cameraFromSensor sensorFromWorld for every pose;

@@ -4,11 +4,15 @@
 #include "app/refine_network.h"
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
 #include <map>
+#include <set>
+#include <tuple>
 
 #include <fmt/format.h>
 
+#include "app/observing.h"
 #include "app/pose_clock.h"
 #include "plugin_api/picture_header.h"
 
@@ -150,18 +154,14 @@ Result<void> Builder::add(const ObservationRow& row, std::size_t index) {
   return {};
 }
 
+/// What a file's rows and a project's observations call the same.
+constexpr std::array kKinds{
+    std::pair{ObservedKind::Control, ObservationKind::Control}, std::pair{ObservedKind::Scan, ObservationKind::Scan},
+    std::pair{ObservedKind::Tie, ObservationKind::Tie},         std::pair{ObservedKind::Edge, ObservationKind::Edge},
+    std::pair{ObservedKind::Depth, ObservationKind::Depth},     std::pair{ObservedKind::Surface, ObservationKind::Surface}};
+
 ObservationKind kindOf(ObservedKind kind) {
-  switch (kind) {
-    case ObservedKind::Control:
-      return ObservationKind::Control;
-    case ObservedKind::Scan:
-      return ObservationKind::Scan;
-    case ObservedKind::Tie:
-      return ObservationKind::Tie;
-    case ObservedKind::Edge:
-      return ObservationKind::Edge;
-  }
-  return ObservationKind::Control;
+  return std::find_if(kKinds.begin(), kKinds.end(), [&](const auto& pair) { return pair.first == kind; })->second;
 }
 
 }  // namespace
@@ -199,30 +199,64 @@ std::optional<std::size_t> NetworkRefinement::rowOf(const NetworkResidual& resid
   }
 }
 
-std::vector<ObservationRow> observationRowsOf(const Project& project) {
+std::vector<ObservationRow> observationRowsOf(const Project& project, FrameId only) {
+  const auto wanted = [&](const Observation& o) {
+    if (only) return o.enabled && o.frame == only && o.kind != ObservedKind::Tie;
+    return o.enabled && (o.kind == ObservedKind::Surface || project.findFrame(o.frame));
+  };
+  std::set<std::string> seen;
+  for (const Observation& o : project.observations)
+    if (wanted(o) && o.hasPixel() && o.kind != ObservedKind::Edge) seen.insert(o.name);
   std::vector<ObservationRow> rows;
   for (std::size_t i = 0; i < project.observations.size(); ++i) {
     const Observation& o = project.observations[i];
-    const Frame* frame = project.findFrame(o.frame);
-    if (!o.enabled || !frame) continue;
+    const bool surface = o.kind == ObservedKind::Surface;
+    if (!wanted(o) || (!o.hasPixel() && !seen.contains(o.name))) continue;
     ObservationRow row;
     row.where = fmt::format("{}, observation {}", project.path, i + 1);
     row.id = o.id;
-    row.frame = frame->name;
+    if (!surface) row.frame = project.findFrame(o.frame)->name;
     row.name = o.name.empty() ? fmt::format("observation {}", i + 1) : o.name;
     row.kind = kindOf(o.kind);
-    row.pixel = o.pixel, row.world = o.world, row.sigmaPx = o.sigmaPx, row.sigmaM = o.sigmaM, row.heldOut = o.heldOut;
-    if (o.kind == ObservedKind::Edge) row.second = o.edgeEnd;
+    if (o.kind != ObservedKind::Tie || o.world != glm::dvec3(0)) row.world = o.world;
+    row.pixel = o.pixel, row.sigmaPx = o.sigmaPx, row.sigmaM = o.sigmaM, row.heldOut = o.heldOut;
+    row.depthM = o.depthM;
+    if (o.kind == ObservedKind::Edge || surface) row.second = o.edgeEnd;
     rows.push_back(std::move(row));
   }
   return rows;
+}
+
+Result<void> keepObservations(Project& project, const std::string& frame, const std::vector<ObservationRow>& rows) {
+  std::vector<Observation> kept;
+  std::set<std::tuple<FrameId, ObservedKind, std::string>> replaced;
+  ObservationId id = nextObservationId(project);
+  for (const ObservationRow& row : rows) {
+    const auto kind = std::find_if(kKinds.begin(), kKinds.end(), [&](const auto& pair) { return pair.second == row.kind; });
+    if (kind == kKinds.end()) return fail("A project keeps no camera's position", row.where, "Leave the row out, or do not keep the observations");
+    Observation o;
+    if (row.kind != ObservationKind::Surface) {
+      const auto named = project.frameByNameOrIndex(row.frame.empty() ? frame : row.frame);
+      if (!named) return fail(named.error().in(row.where));
+      o.frame = *named;
+    }
+    o.id = id, ++id.value;
+    o.kind = kind->first, o.name = row.name, o.pixel = row.pixel, o.depthM = row.depthM;
+    o.world = row.world.value_or(glm::dvec3(0)), o.edgeEnd = row.second.value_or(glm::dvec3(0));
+    o.sigmaPx = row.sigmaPx, o.sigmaM = row.sigmaM, o.heldOut = row.heldOut;
+    replaced.emplace(o.frame, o.kind, o.name);
+    kept.push_back(std::move(o));
+  }
+  std::erase_if(project.observations, [&](const Observation& o) { return replaced.contains({o.frame, o.kind, o.name}); });
+  project.observations.insert(project.observations.end(), kept.begin(), kept.end());
+  return {};
 }
 
 Result<NetworkSummary> refineNetwork(Project& project, const NetworkRefinement& refinement, const NetworkOptions& options,
                                      bool dryRun, const Progress& progress) {
   auto summary = adjustNetwork(refinement.network, options, progress);
   if (!summary || !summary->converged || dryRun) return summary;
-  applyClocks(project, refinement.network, refinement.clocks, *summary);
+  applyMotion(project, refinement.frames, refinement.network, refinement.clocks, *summary);
   for (std::size_t i = 0; i < refinement.frames.size(); ++i) {
     Frame& frame = *project.findFrame(refinement.frames[i]);
     const AdjustedPose& adjusted = summary->poses[refinement.network.frames[i].pose];

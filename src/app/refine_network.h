@@ -42,8 +42,14 @@ struct NetworkRefinement {
 Result<NetworkRefinement> networkOf(const Project& project, const std::string& frame,
                                     const std::vector<ObservationRow>& rows, const NetworkFreedom& freedom);
 
-/// The enabled observations that a project keeps, as rows.
-std::vector<ObservationRow> observationRowsOf(const Project& project);
+/// The enabled observations that a project keeps, as rows: all, or those of one frame without the points of unknown place,
+/// which one picture cannot have. Depths and surfaces of points that none of them shows are left out.
+std::vector<ObservationRow> observationRowsOf(const Project& project, FrameId only = {});
+
+/// The project keeps the rows as its own observations, in place of those of the same frame, kind and name; rows that name no
+/// frame belong to `frame`. Error for a camera's position, which is no observation, and for a frame that does not exist;
+/// the project is unchanged then.
+Result<void> keepObservations(Project& project, const std::string& frame, const std::vector<ObservationRow>& rows);
 
 /// Adjusts, and gives the project the new poses (and calibrations that were free) where it converged and not `dryRun`.
 Result<NetworkSummary> refineNetwork(Project& project, const NetworkRefinement& refinement, const NetworkOptions& options,

@@ -426,7 +426,10 @@ Result<SequenceSummary> refineSequence(Project& project, const AlignmentScene& s
                                        const SequenceOptions& options, bool dryRun, const Progress& progress) {
   auto summary = Sequence(project, scene, pictures, options, progress).run();
   if (!summary || !summary->converged || dryRun) return summary;
-  applyClocks(project, summary->network, summary->clocks, summary->adjustment);
+  std::vector<FrameId> seen;  // in the order of the network's frames
+  for (std::size_t i = 0; i < summary->frames.size(); ++i)
+    if (summary->seenAs[i] >= 0) seen.push_back(summary->frames[i].frame);
+  applyMotion(project, seen, summary->network, summary->clocks, summary->adjustment);
   carryBetween(project, *summary);
   for (std::size_t i = 0; i < summary->frames.size(); ++i) {
     if (!summary->frames[i].refined) continue;

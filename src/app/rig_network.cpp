@@ -73,9 +73,35 @@ void dropEmptyPoses(Network& network) {
   for (PosePrior& prior : network.priors) prior.pose = number[prior.pose];
 }
 
+/// Of each network camera.
+std::vector<std::optional<CameraMount>> mountsOf(const Project& project, const std::vector<FrameId>& frames, const Network& network) {
+  std::vector<std::optional<CameraMount>> kept(network.cameras.size());
+  for (std::size_t i = 0; i < frames.size(); ++i)
+    kept[network.frames[i].camera] = project.findCamera(project.findFrame(frames[i])->camera)->mount;
+  return kept;
+}
+
+/// On the body that the carrying camera itself is known to sit on, else on that camera.
+void applyMounts(Project& project, const std::vector<FrameId>& frames, const Network& network, const NetworkSummary& summary) {
+  CameraRecord* carrier = nullptr;
+  for (std::size_t i = 0; i < frames.size() && !carrier; ++i)
+    if (network.frames[i].mount < 0) carrier = project.findCamera(project.findFrame(frames[i])->camera);
+  if (!carrier) return;
+  if (!carrier->mount) carrier->mount = CameraMount{carrier->name, RigidTransform::identity()};
+  const CameraMount body = *carrier->mount;
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const int mount = network.frames[i].mount;
+    if (mount < 0 || network.mounts[mount].locked[0]) continue;
+    CameraMount adjusted{body.body, summary.cameraFromBody[mount] * body.cameraFromBody};
+    if (!summary.mountAccuracy.empty())
+      adjusted.offsetStdM = summary.mountAccuracy[mount].offsetStdM, adjusted.rotationStdRad = summary.mountAccuracy[mount].rotationStdRad;
+    project.findCamera(project.findFrame(frames[i])->camera)->mount = std::move(adjusted);
+  }
+}
+
 }  // namespace
 
-Result<void> joinRig(Network& network, bool freeMounts) {
+Result<void> joinRig(Network& network, const std::vector<std::optional<CameraMount>>& kept, bool freeMounts) {
   if (network.cameras.size() < 2)
     return fail("All pictures are of one camera: there is no rig", {}, "Leave the rig out, or add the pictures of its other cameras");
   const auto moments = momentsOf(network);
@@ -83,7 +109,9 @@ Result<void> joinRig(Network& network, bool freeMounts) {
   std::vector<int> mountOfCamera(network.cameras.size(), -1);
   for (std::size_t c = 0; c < network.cameras.size(); ++c) {
     if (static_cast<int>(c) == base) continue;
-    const auto cameraFromBody = mountOf(network, moments, static_cast<int>(c), base);
+    const bool known = kept[c] && kept[base] && kept[c]->body == kept[base]->body;
+    const auto cameraFromBody = known ? kept[c]->cameraFromBody * kept[base]->cameraFromBody.inverse()
+                                      : mountOf(network, moments, static_cast<int>(c), base);
     if (!cameraFromBody)
       return fail("No picture of camera '" + network.cameras[c].name + "' was taken at the moment of one of camera '" +
                       network.cameras[base].name + "', both with a pose",
@@ -148,12 +176,15 @@ Result<NetworkClocks> holdToTrajectories(const Project& project, const std::vect
 
 Result<NetworkClocks> tieMotion(const Project& project, const std::vector<FrameId>& frames, const MotionTies& ties, Network& network) {
   if (ties.rig || ties.freeMounts)
-    if (const auto joined = joinRig(network, ties.freeMounts); !joined) return fail(joined.error());
+    if (const auto joined = joinRig(network, mountsOf(project, frames, network), ties.freeMounts); !joined) return fail(joined.error());
   if (!ties.trajectory && !ties.freeClock) return NetworkClocks();
   return holdToTrajectories(project, frames, ties.freeClock, network);
 }
 
-void applyClocks(Project& project, const Network& network, const NetworkClocks& clocks, const NetworkSummary& summary) {
+void applyMotion(Project& project, const std::vector<FrameId>& frames, const Network& network, const NetworkClocks& clocks,
+                 const NetworkSummary& summary) {
+  if (std::any_of(network.mounts.begin(), network.mounts.end(), [](const NetworkMount& mount) { return !mount.locked[0]; }))
+    applyMounts(project, frames, network, summary);
   for (std::size_t i = 0; i < clocks.size(); ++i) {
     if (!network.trajectories[i].clockFree) continue;
     for (const TrajectoryId& id : clocks[i]) {

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "adjust/network.h"
@@ -25,10 +26,11 @@ struct MotionTies {
 using NetworkClocks = std::vector<std::vector<TrajectoryId>>;
 
 /// Puts frames of one moment (to a millisecond) on one body: that of the first frame's camera, whose frames keep their
-/// poses; every other camera gets a mount, the mean of what the poses say. Expects a pose a frame and nothing but
+/// poses; every other camera gets a mount: as the project keeps them (`kept`, one a network camera), where both sit on the
+/// same body, else the mean of what the poses say. Expects a pose a frame and nothing but
 /// priors that refers to poses; poses without a frame are gone afterwards. Error where two cameras have no moment in
 /// common, or where a mounted frame has a prior.
-Result<void> joinRig(Network& network, bool freeMounts);
+Result<void> joinRig(Network& network, const std::vector<std::optional<CameraMount>>& kept, bool freeMounts);
 
 /// Holds the poses of the bodies to the trajectories of their frames, as well as those are believed to be known
 /// (NetworkTrajectory). `frames`: of the project, one a NetworkFrame. Error where no frame has a trajectory.
@@ -37,7 +39,9 @@ Result<NetworkClocks> holdToTrajectories(const Project& project, const std::vect
 /// Both, where `ties` wants them.
 Result<NetworkClocks> tieMotion(const Project& project, const std::vector<FrameId>& frames, const MotionTies& ties, Network& network);
 
-/// Gives the project's trajectories the adjusted clock offsets; frames that were not refined follow.
-void applyClocks(Project& project, const Network& network, const NetworkClocks& clocks, const NetworkSummary& summary);
+/// Gives the project's trajectories the adjusted clock offsets (frames that were not refined follow), and its cameras the
+/// mounts that were free. `frames` as above.
+void applyMotion(Project& project, const std::vector<FrameId>& frames, const Network& network, const NetworkClocks& clocks,
+                 const NetworkSummary& summary);
 
 }  // namespace alidade

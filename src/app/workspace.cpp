@@ -135,7 +135,7 @@ Result<FrameDescription> describeFrame(const Project& project, const LoadedData&
       description.annotations.push_back(annotation);
   description.selectedAnnotation = selection.annotation;
   for (const Observation& seen : project.observations) {
-    if (seen.frame != frameId || !seen.enabled) continue;
+    if (seen.frame != frameId || !seen.enabled || !seen.hasPixel()) continue;
     if (const auto projected = fittedPixel(camera->camera, description.shutter, description.cameraFromWorld, seen))
       description.residuals.push_back({seen.pixel, *projected, seen.name});
   }

@@ -23,7 +23,7 @@ using Json = nlohmann::ordered_json;
 struct Arguments {
   std::string project, frame, observations, lock, free;
   std::vector<std::string> at;
-  bool dryRun = false, automatic = false, sequence = false, rig = false, trajectory = false;
+  bool dryRun = false, keep = false, automatic = false, sequence = false, rig = false, trajectory = false;
   double withinPx = 1;
   std::optional<AlignTo> to;
   int keyframes = 1;
@@ -123,8 +123,10 @@ Json jsonOf(const Project& project, const NetworkRefinement& refinement, const N
   Json frames = Json::array(), groups = Json::array(), residuals = Json::array(), outliers = Json::array(), checks = Json::array();
   for (std::size_t i = 0; i < network.frames.size(); ++i) {
     const AdjustedPose& pose = summary.poses[network.frames[i].pose];
-    const glm::dquat& q = pose.bodyFromWorld.rotation;
-    frames.push_back({{"name", network.frames[i].name}, {"camera_centre_m", vec(pose.bodyFromWorld.centre())},
+    // Not converged, the summary has no mounts.
+    const RigidTransform camera = summary.converged ? cameraFromWorld(network, summary, static_cast<int>(i)) : pose.bodyFromWorld;
+    const glm::dquat& q = camera.rotation;
+    frames.push_back({{"name", network.frames[i].name}, {"camera_centre_m", vec(camera.centre())},
                       {"camera_from_world_wxyz", {q.w, q.x, q.y, q.z}}, {"position_std_m", vec(pose.positionStdM)},
                       {"rotation_std_rad", vec(pose.rotationStdRad)}, {"ellipse_95", ellipseOf(pose.ellipse)},
                       {"rms_px", pose.rmsPx}, {"observations", pose.observations}, {"outliers", pose.outliers}});
@@ -198,6 +200,23 @@ bool isResection(const std::vector<ObservationRow>& rows, const std::string& fra
   });
 }
 
+/// The project's own: all, or of one frame.
+Result<std::vector<ObservationRow>> rowsOf(const Project& project, const std::string& frame) {
+  if (frame.empty()) return observationRowsOf(project);
+  const auto only = project.frameByNameOrIndex(frame);
+  if (!only) return fail(only.error());
+  auto rows = observationRowsOf(project, *only);
+  for (ObservationRow& row : rows) row.frame.clear();
+  return rows;
+}
+
+Result<void> save(Project& project, const Arguments& arguments, const std::vector<ObservationRow>& rows) {
+  if (arguments.dryRun) return {};
+  if (arguments.keep)
+    if (auto kept = keepObservations(project, arguments.frame, rows); !kept) return kept;
+  return saveProject(project, arguments.project);
+}
+
 Result<Answer> runResection(Project& project, const Arguments& arguments, const std::vector<ObservationRow>& rows,
                             const ResectionOptions& options) {
   const auto frame = project.frameByNameOrIndex(arguments.frame);
@@ -208,8 +227,8 @@ Result<Answer> runResection(Project& project, const Arguments& arguments, const 
   for (const ObservationRow& row : rows) observations.push_back({row.pixel, *row.world, row.sigmaPx, row.name, row.sigmaM});
   auto summary = refineFrame(project, *frame, observations, options, arguments.dryRun);
   if (!summary) return fail(summary.error());
-  if (summary->converged && !arguments.dryRun)
-    if (auto saved = saveProject(project, arguments.project); !saved) return fail(saved.error());
+  if (summary->converged)
+    if (auto saved = save(project, arguments, rows); !saved) return fail(saved.error());
   return answerOf(jsonOf(*summary, arguments.dryRun), summary->report(), summary->converged);
 }
 
@@ -222,8 +241,8 @@ Result<Answer> runNetwork(Project& project, const Arguments& arguments, const st
     for (std::size_t f = 0; f < refinement->network.frames.size(); ++f) options.at.push_back({static_cast<int>(f), point});
   const auto summary = refineNetwork(project, *refinement, options, arguments.dryRun, progress);
   if (!summary) return fail(summary.error());
-  if (summary->converged && !arguments.dryRun)
-    if (auto saved = saveProject(project, arguments.project); !saved) return fail(saved.error());
+  if (summary->converged)
+    if (auto saved = save(project, arguments, rows); !saved) return fail(saved.error());
   return answerOf(jsonOf(project, *refinement, *summary, arguments.dryRun), summary->report(refinement->network), summary->converged);
 }
 
@@ -257,15 +276,8 @@ Result<Answer> run(const Arguments& arguments, const Progress& progress) {
   }
   auto project = loadProject(arguments.project);
   if (!project) return fail(project.error());
-  auto rows = arguments.observations.empty() ? Result<std::vector<ObservationRow>>(observationRowsOf(*project))
-                                             : readObservationRows(arguments.observations);
+  auto rows = arguments.observations.empty() ? rowsOf(*project, arguments.frame) : readObservationRows(arguments.observations);
   if (!rows) return fail(rows.error());
-  if (arguments.observations.empty() && !arguments.frame.empty()) {
-    const auto frame = project->frameByNameOrIndex(arguments.frame);
-    if (!frame) return fail(frame.error());
-    std::erase_if(*rows, [&](const ObservationRow& row) { return row.frame != project->findFrame(*frame)->name; });
-    for (ObservationRow& row : *rows) row.frame.clear();
-  }
   if (rows->empty()) return fail("The project keeps no observation to refine from", arguments.project, "Give --observations FILE");
   if (isResection(*rows, arguments.frame, freedom)) return runResection(*project, arguments, *rows, options);
   return runNetwork(*project, arguments, *rows, freedom, options.at, progress);
@@ -282,6 +294,8 @@ void addRefine(Verbs& verbs) {
   command->add_option("--observations", arguments->observations,
                       "CSV: u,v,e,n,h[,sigma_px][,name][,frame][,kind][,use][,sigma_m][,e2,n2,h2][,depth_m]; "
                       "without it, those that the project keeps");
+  command->add_flag("--keep", arguments->keep, "The project keeps the observations of --observations, with the new poses")
+      ->needs("--observations");
   command->add_option("--lock", arguments->lock, "Of position,attitude,x,y,z,rx,ry,rz (rotations about the camera's axes)")
       ->check(checkedBy([](const std::string& list) { NetworkFreedom ignored; return applyLocks(list, ignored); }, "LIST"));
   auto* free = command->add_option("--free", arguments->free, "Of focal,principal-point,distortion,rig,clock, beside the poses")

@@ -65,7 +65,7 @@ Result<void> writeColmap(const Project& project, const ExportedSet& set, const s
   std::string pointText = "# POINT3D_ID X Y Z R G B ERROR TRACK[] as (IMAGE_ID, POINT2D_IDX)\n";
   for (const Observation& seen : project.observations) {
     const auto image = imageOf.find(seen.frame.value);
-    if (!seen.enabled || image == imageOf.end()) continue;
+    if (!seen.enabled || !seen.hasPixel() || image == imageOf.end()) continue;
     const auto [at, isNew] = pointOf.emplace(std::tuple(seen.name, seen.world.x, seen.world.y, seen.world.z), points.size());
     if (isNew) points.emplace_back();
     points[at->second].track.emplace_back(image->second, featureCount[image->second]++);

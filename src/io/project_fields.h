@@ -30,6 +30,10 @@ struct CameraShutterRow {
   std::int64_t parent = 0;
   double readoutSecs = 0;
 };
+struct CameraMountRow {
+  std::int64_t parent = 0;
+  CameraMount mount;
+};
 struct VideoTimingRow {
   std::int64_t parent = 0;
   FrameTiming timing = FrameTiming::Container;
@@ -250,6 +254,15 @@ void visit(V& v, CameraShutterRow& row) {
 }
 
 template <class V>
+void visit(V& v, CameraMountRow& row) {
+  v("camera", row.parent);
+  v("body", row.mount.body);
+  visitPose(v, {"qw", "qx", "qy", "qz", "tx", "ty", "tz"}, row.mount.cameraFromBody);
+  visitVector(v, {"std_tx_m", "std_ty_m", "std_tz_m"}, row.mount.offsetStdM);
+  visitVector(v, {"std_x_rad", "std_y_rad", "std_z_rad"}, row.mount.rotationStdRad);
+}
+
+template <class V>
 void visit(V& v, VideoTimingRow& row) {
   v("video", row.parent);
   v.choice("timing", row.timing, {"container", "constant_rate", "table"});
@@ -328,11 +341,12 @@ template <class V>
 void visit(V& v, Observation& observation) {
   v("id", observation.id);
   v("frame", observation.frame);
-  v.choice("kind", observation.kind, {"control", "scan", "tie", "edge"});
+  v.choice("kind", observation.kind, {"control", "scan", "tie", "edge", "depth", "surface"});
   v("u_px", observation.pixel.x);
   v("v_px", observation.pixel.y);
   visitVector(v, {"e", "n", "h"}, observation.world);
   visitVector(v, {"e2", "n2", "h2"}, observation.edgeEnd);
+  v("depth_m", observation.depthM);
   v("sigma_px", observation.sigmaPx);
   v("sigma_m", observation.sigmaM);
   v("name", observation.name);

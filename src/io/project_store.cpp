@@ -141,12 +141,16 @@ Result<void> writeDesigns(const ProjectDatabase& database, const Project& projec
 Result<void> writeCameras(const ProjectDatabase& database, const Project& project) {
   std::vector<CameraRow> cameras;
   std::vector<CameraShutterRow> shutters;
+  std::vector<CameraMountRow> mounts;
   for (std::size_t i = 0; i < project.cameras.size(); ++i) {
     const CameraRecord& camera = project.cameras[i];
     cameras.push_back({camera.id, camera.name, camera.camera.intrinsics()});
     if (camera.readoutSecs != 0) shutters.push_back({std::int64_t(i), camera.readoutSecs});
+    if (camera.mount) mounts.push_back({std::int64_t(i), *camera.mount});
   }
-  return writeRows(database, "camera", cameras).and_then([&] { return writeRows(database, "camera_shutter", shutters); });
+  return writeRows(database, "camera", cameras)
+      .and_then([&] { return writeRows(database, "camera_shutter", shutters); })
+      .and_then([&] { return writeRows(database, "camera_mount", mounts); });
 }
 
 Result<void> writeVideos(const ProjectDatabase& database, const Project& project) {
@@ -227,7 +231,7 @@ Result<void> checkHeader(const std::string& path) {
 
 /// Tables that older versions did not write; what they hold keeps its defaults then.
 bool isOptional(const std::string& table) {
-  static const std::set<std::string> later = {"point_style", "camera_shutter", "video_timing", "trajectory",
+  static const std::set<std::string> later = {"point_style", "camera_shutter", "camera_mount", "video_timing", "trajectory",
                                               "trajectory_pose", "frame_trajectory"};
   return later.contains(table);
 }
@@ -365,7 +369,11 @@ Result<void> readAll(const ProjectDatabase& database, const std::string& path, P
     project.cameras.push_back({row.id, std::move(row.name), blank ? Camera() : Camera(row.intrinsics)});
   }
   return readChildren<CameraShutterRow>(database, path, "camera_shutter", project.cameras,
-      [](CameraRecord& camera, CameraShutterRow& row) { camera.readoutSecs = row.readoutSecs; });
+      [](CameraRecord& camera, CameraShutterRow& row) { camera.readoutSecs = row.readoutSecs; })
+      .and_then([&] {
+        return readChildren<CameraMountRow>(database, path, "camera_mount", project.cameras,
+            [](CameraRecord& camera, CameraMountRow& row) { camera.mount = std::move(row.mount); });
+      });
 }
 
 }  // namespace

@@ -31,6 +31,10 @@ const CameraRecord* Project::findCamera(CameraId id) const {
   return it == cameras.end() ? nullptr : &*it;
 }
 
+CameraRecord* Project::findCamera(CameraId id) {
+  return const_cast<CameraRecord*>(std::as_const(*this).findCamera(id));
+}
+
 const Video* Project::findVideo(VideoId id) const {
   const auto it = std::find_if(videos.begin(), videos.end(), [&](const Video& v) { return v.id == id; });
   return it == videos.end() ? nullptr : &*it;

@@ -43,11 +43,21 @@ struct Design {
   std::vector<std::string> hiddenElements;  ///< globalIds switched off
 };
 
+/// Where a camera sits on the body that carries it: the sensor whose trajectory is known, or the camera that the others
+/// of a rig were adjusted to.
+struct CameraMount {
+  std::string body;               ///< its name; mounts on the same body make one rig
+  RigidTransform cameraFromBody;
+  glm::dvec3 offsetStdM{0};       ///< of the translation, where it was adjusted
+  glm::dvec3 rotationStdRad{0};   ///< about the camera's x, y, z
+};
+
 struct CameraRecord {
   CameraId id;
   std::string name;
   Camera camera;
   double readoutSecs = 0;  ///< rolling shutter, see camera/rolling_shutter.h; 0: all rows at once
+  std::optional<CameraMount> mount = {};
 };
 
 /// Where a video's frames have their times from.
@@ -122,23 +132,28 @@ struct ControlPoint {
 enum class ObservedKind {
   Control,  ///< a surveyed or designed point
   Scan,     ///< a point picked in a scan
-  Tie,      ///< a point of unknown place, under the same name in several frames; `world` is a first guess
+  Tie,      ///< a point of unknown place, under the same name in several frames; `world` is a first guess, zero where there is none
   Edge,     ///< a place on the straight edge from `world` to `edgeEnd`
+  Depth,    ///< how far along the optical axis the point of that name lies; no pixel
+  Surface,  ///< the tie point of that name lies on the plane through `world` with the normal `edgeEnd`; no frame, no pixel
 };
 
-/// A world point, or a place on an edge, seen in a picture.
+/// A world point, or a place on an edge, seen in a picture; or what else is known of a point.
 struct Observation {
   ObservationId id;
   FrameId frame;
   ObservedKind kind = ObservedKind::Control;
   glm::dvec2 pixel{0};    ///< OpenCV's origin
   glm::dvec3 world{0};    ///< metres
-  glm::dvec3 edgeEnd{0};  ///< of an edge
+  glm::dvec3 edgeEnd{0};  ///< of an edge; of a surface its normal
+  double depthM = 0;      ///< of a depth
   double sigmaPx = 0.5;
-  double sigmaM = 0;      ///< of the world point, on each axis
+  double sigmaM = 0;      ///< of the world point, on each axis; of the depth; across the surface
   std::string name;
   bool enabled = true;
   bool heldOut = false;   ///< takes no part; its residual is shown beside the fitted ones
+
+  bool hasPixel() const { return kind != ObservedKind::Depth && kind != ObservedKind::Surface; }
 };
 
 enum class AnnotationKind { Text, Arrow, Callout };
@@ -189,6 +204,7 @@ struct Project {
   const Frame* findFrame(FrameId id) const;
   Frame* findFrame(FrameId id);
   const CameraRecord* findCamera(CameraId id) const;
+  CameraRecord* findCamera(CameraId id);
   const Video* findVideo(VideoId id) const;
   const Trajectory* findTrajectory(TrajectoryId id) const;
   Trajectory* findTrajectory(TrajectoryId id);

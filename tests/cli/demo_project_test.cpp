@@ -95,6 +95,43 @@ TEST(CommandLine, RefinesAPoseFromObservationsAndRemembersIt) {
   EXPECT_EQ(locked.json()["position_std_m"][0], 0.0);
 }
 
+TEST(CommandLine, AProjectKeepsDepthsAndRefinesFromThem) {
+  const auto project = smallDemo() / "kept.alidade";
+  std::filesystem::copy_file(smallDemo() / "demo.alidade", project, std::filesystem::copy_options::overwrite_existing);
+  std::ifstream file(smallDemo() / "observations.csv");
+  std::string header, line, rows, name;
+  std::getline(file, header);
+  ASSERT_EQ(header, "u,v,e,n,h,sigma_px,name");
+  while (std::getline(file, line)) {
+    rows += line + ",,\n";
+    if (name.empty()) name = line.substr(line.rfind(',') + 1);
+  }
+  const auto first = alidadeCli("refine --json --dry-run --frame 0 --observations " + quoted(smallDemo() / "observations.csv") + " " + quoted(project));
+  ASSERT_EQ(first.exitCode, 0) << first.errors;
+  const auto csv = scratch() / "depth.csv";
+  const auto refined = [&](double depth) {
+    std::ofstream(csv) << header << ",kind,depth_m\n" << rows << ",,,,,," << name << ",depth," << depth << "\n";
+    return alidadeCli("refine --json --keep --frame 0 --observations " + quoted(csv) + " " + quoted(project));
+  };
+  const auto depthOf = [](const nlohmann::json& json) {
+    for (const auto& residual : json["residuals"])
+      if (residual["kind"] == "depth") return residual["residual_m"].get<double>();
+    return std::nan("");
+  };
+  const auto far = refined(1000);  // an outlier, whose residual says how deep the point lies
+  ASSERT_EQ(far.exitCode, 0) << far.errors << far.output;
+  const double depth = 1000 + depthOf(far.json());
+  ASSERT_GT(depth, 0.5);
+  ASSERT_LT(depth, 100);
+  ASSERT_EQ(refined(depth + 0.002).exitCode, 0);
+  // The project's own from now on, in place of the wrong one.
+  const auto own = alidadeCli("refine --json --dry-run --frame 0 " + quoted(project));
+  ASSERT_EQ(own.exitCode, 0) << own.errors << own.output;
+  EXPECT_NEAR(depthOf(own.json()), -0.002, 0.002);
+  EXPECT_EQ(own.json()["residuals"].size(), first.json()["residuals"].size() + 1);
+  EXPECT_NE(alidadeCli("refine --dry-run --frame 0 " + quoted(project)).output.find("depth"), std::string::npos);
+}
+
 TEST(CommandLine, ADegenerateSetIsRefusedWithItsReasonAndTheProjectUnchanged) {
   const auto observations = scratch() / "two.csv";
   std::ofstream(observations) << "u,v,e,n,h\n100,100,2683500,1247800,412\n200,200,2683501,1247801,413\n";

@@ -224,6 +224,51 @@ TEST_F(ResectionWindow, MillimetresAreGivenAtTheChosenPoint) {
   EXPECT_TRUE(window->findChild<QLabel*>("summary")->text().contains("at the chosen point"));
 }
 
+TEST_F(ResectionWindow, DepthsAndSurfacesStandAmongTheObservations) {
+  const Frame& frame = *session().currentFrame();
+  const auto seen = controlPointsInView(*session().project(), frame);
+  ASSERT_FALSE(seen.empty());
+  const std::size_t before = count();
+  session().change("Add depth", [&](Project& project) {
+    Observation point, depth, surface;
+    for (const ControlPoint& known : project.controlPoints)
+      if (QString::fromStdString(known.name) == seen[0].name) point.world = known.position;
+    point.name = depth.name = seen[0].name.toStdString(), surface.name = "T1";
+    point.frame = depth.frame = frame.id;
+    point.pixel = seen[0].pixel + glm::dvec2(3, 0);
+    depth.kind = ObservedKind::Depth, depth.sigmaM = 0.01;
+    depth.depthM = (*frame.cameraFromWorld * point.world).z - 0.012;
+    surface.kind = ObservedKind::Surface, surface.world = point.world, surface.edgeEnd = {0, 0, 1};
+    ObservationId id = nextObservationId(project);
+    for (Observation* made : {&depth, &point, &surface}) {
+      made->id = id, ++id.value;
+      project.observations.push_back(*made);
+    }
+  });
+  ASSERT_TRUE(settle());
+  const auto text = [&](int row, int column) { return table->model()->index(row, column).data().toString(); };
+  ASSERT_EQ(table->model()->rowCount(), static_cast<int>(before) + 2) << "a surface belongs to no frame";
+  window->refinement().setScope(RefinementScope::AllFrames);
+  ASSERT_EQ(table->model()->rowCount(), static_cast<int>(before) + 3);
+  table->sortByColumn(ObservationModel::Residual, Qt::DescendingOrder);
+  EXPECT_EQ(text(0, ObservationModel::Kind), "known");
+  EXPECT_NEAR(text(0, ObservationModel::Residual).toDouble(), 3, 0.1);
+  EXPECT_EQ(text(1, ObservationModel::Kind), "depth");
+  EXPECT_EQ(text(1, ObservationModel::Residual), "12 mm");
+  EXPECT_TRUE(text(1, ObservationModel::Place).endsWith(" m"));
+  EXPECT_EQ(text(2, ObservationModel::Kind), "surface");
+  const auto flags = [&](int row) { return table->model()->flags(table->model()->index(row, ObservationModel::Check)); };
+  EXPECT_TRUE(flags(1) & Qt::ItemIsUserCheckable);
+  EXPECT_FALSE(flags(2) & Qt::ItemIsUserCheckable) << "a surface leaves nothing to look at beside the fit";
+  ASSERT_EQ(view().probe().description()->residuals.size(), 1u) << "only what was seen in the picture is drawn there";
+
+  window->actions()[Command::Undo]->trigger();
+  EXPECT_EQ(count(), before);
+  window->actions()[Command::Redo]->trigger();
+  ASSERT_EQ(count(), before + 3);
+  EXPECT_EQ(session().project()->observations[before].kind, ObservedKind::Depth);
+}
+
 TEST_F(ResectionWindow, AcceptingAPoseKeepsWhatChangedMeanwhile) {
   ASSERT_GE(observeControlPoints([](std::size_t i) { return glm::dvec2(0.4 * (i % 3), 0.3); }), 6u);
   window->refinement().refine();

@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "app/observing.h"
 #include "app/refine_network.h"
 
 namespace alidade {
@@ -106,6 +107,70 @@ TEST(ObservationRows, MakeOneNetworkOverTheFramesTheyName) {
   EXPECT_EQ(made->network.points.size(), 2u);
   EXPECT_EQ(made->network.observations.size(), 3u);
   EXPECT_TRUE(made->network.points[1].surface);
+}
+
+TEST(ObservationRows, AProjectKeepsEveryKind) {
+  const auto rows = readObservationRows(write(withHeader(",,,,,C1,A,depth,check,0.02,,,,7.5\n,,1,2,3,T1,,surface,1,0.004,0,0,1\n10,20,1,2,3,C1,A,control\n"
+                                                         "12,22,,,,T1,A,tie\n13,23,,,,T1,B,tie\n30,31,1,2,3,E1,A,edge,1,,4,5,6\n32,31,1,2,3,E1,A,edge,1,,4,5,6\n")));
+  ASSERT_TRUE(rows) << rows.error().text();
+  Project project = twoFrames();
+  ASSERT_TRUE(keepObservations(project, "", *rows));
+  ASSERT_EQ(project.observations.size(), 7u);
+  EXPECT_EQ(project.observations[0].kind, ObservedKind::Depth);
+  EXPECT_FALSE(project.observations[1].frame);
+  const auto again = observationRowsOf(project);
+  ASSERT_EQ(again.size(), rows->size());
+  for (std::size_t i = 0; i < again.size(); ++i) {
+    const ObservationRow &was = (*rows)[i], &is = again[i];
+    EXPECT_EQ(is.kind, was.kind);
+    EXPECT_EQ(is.frame.substr(0, 1), was.frame);
+    EXPECT_EQ(is.name, was.name);
+    EXPECT_EQ(is.pixel, was.pixel);
+    EXPECT_EQ(is.depthM, was.depthM);
+    EXPECT_EQ(is.sigmaM, was.sigmaM);
+    EXPECT_EQ(is.heldOut, was.heldOut);
+    if (was.kind != ObservationKind::Depth) { EXPECT_EQ(is.world, was.world); }
+    if (was.second) { EXPECT_EQ(is.second, was.second); }
+  }
+  const auto made = networkOf(project, "", again, {});
+  ASSERT_TRUE(made) << made.error().text();
+  ASSERT_EQ(made->network.depths.size(), 1u);
+  EXPECT_EQ(made->network.depths[0].depthM, 7.5);
+  ASSERT_EQ(made->surfaceRows.size(), 1u);
+  EXPECT_TRUE(made->network.points[static_cast<std::size_t>(made->surfaceRows.begin()->first)].surface);
+  EXPECT_EQ(again[made->surfaceRows.begin()->second].name, "T1");
+
+  ASSERT_TRUE(keepObservations(project, "", {rows->begin(), rows->begin() + 1}));
+  EXPECT_EQ(project.observations.size(), 7u) << "in place of the same";
+
+  // One picture has no tie points, and nothing of other pictures' points.
+  EXPECT_EQ(observationRowsOf(project, FrameId{1}).size(), 4u) << "C1, its depth, two places of E1";
+  EXPECT_EQ(observationRowsOf(project, FrameId{2}).size(), 0u);
+  for (Observation& o : project.observations)
+    if (o.kind == ObservedKind::Tie) o.enabled = false;
+  EXPECT_EQ(observationRowsOf(project).size(), 4u) << "without the point, its surface has nothing to hold";
+
+  ObservationRow tripod;
+  tripod.kind = ObservationKind::Position, tripod.frame = "A", tripod.where = "line 9";
+  const auto refused = keepObservations(project, "", {tripod});
+  ASSERT_FALSE(refused);
+  EXPECT_THAT(refused.error().text(), HasSubstr("line 9"));
+  EXPECT_EQ(project.observations.size(), 7u);
+}
+
+TEST(ObservationRows, ADepthIsJudgedAtThePoseOfItsFrame) {
+  Project project = twoFrames();
+  project.frames[0].cameraFromWorld = RigidTransform{glm::dquat(1, 0, 0, 0), {0, 0, 2}};
+  Observation point, depth;
+  point.name = depth.name = "C1", point.frame = depth.frame = FrameId{1};
+  point.world = {0.1, 0.2, 5.5}, point.pixel = {320, 240};
+  depth.kind = ObservedKind::Depth, depth.depthM = 7.25;
+  project.observations = {point, depth};
+  ASSERT_TRUE(depthResidualM(project, depth));
+  EXPECT_DOUBLE_EQ(*depthResidualM(project, depth), 0.25);
+  EXPECT_FALSE(depthResidualM(project, point));
+  project.observations[0].kind = ObservedKind::Tie;
+  EXPECT_FALSE(depthResidualM(project, depth)) << "of an unknown point nobody knows";
 }
 
 TEST(ObservationRows, WhatContradictsItselfIsRefused) {

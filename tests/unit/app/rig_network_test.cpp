@@ -105,6 +105,45 @@ TEST(RigNetwork, MountAndClockAreFoundTogether) {
   EXPECT_THAT(summary->report(made->network), HasSubstr("Mount right: at"));
 }
 
+TEST(RigNetwork, TheProjectKeepsItsRig) {
+  RigSite site;
+  NetworkFreedom freedom;
+  freedom.ties.rig = freedom.ties.freeMounts = true;
+  auto made = networkOf(site.project, "", site.rows, freedom);
+  ASSERT_TRUE(made) << made.error().text();
+  const auto summary = refineNetwork(site.project, *made, {}, false, {});
+  ASSERT_TRUE(summary && summary->converged);
+  ASSERT_TRUE(site.project.cameras[0].mount && site.project.cameras[1].mount);
+  EXPECT_EQ(site.project.cameras[0].mount->body, "left") << "the camera that carries the other";
+  const CameraMount kept = *site.project.cameras[1].mount;
+  EXPECT_EQ(kept.body, "left");
+  EXPECT_LT(glm::distance(kept.cameraFromBody.centre(), mountTruth().centre()), 1e-3);
+  EXPECT_EQ(kept.offsetStdM, summary->mountAccuracy[0].offsetStdM);
+  EXPECT_GT(kept.rotationStdRad.x, 0);
+
+  // It holds from now on, whatever single poses say, and where no moment has two pictures.
+  freedom.ties.freeMounts = false;
+  for (Frame& frame : site.project.frames)
+    if (frame.camera == CameraId{2}) frame.timeSecs += 0.2, frame.cameraFromWorld->translation.x += 0.3;
+  made = networkOf(site.project, "", site.rows, freedom);
+  ASSERT_TRUE(made) << made.error().text();
+  EXPECT_EQ(made->network.mounts[0].cameraFromBody.translation, kept.cameraFromBody.translation);
+  EXPECT_EQ(made->network.poses.size(), 2u * kMoments);
+
+  // On a sensor, cameras stay on it.
+  const RigidTransform sensor{glm::normalize(glm::dquat(1, 0.1, 0.2, -0.1)), {0.05, 0.1, -0.2}};
+  site = RigSite();
+  site.project.cameras[0].mount = CameraMount{"IMU", sensor};
+  site.project.cameras[1].mount = CameraMount{"IMU", mountTruth() * sensor};
+  freedom.ties.freeMounts = true;
+  made = networkOf(site.project, "", site.rows, freedom);
+  ASSERT_TRUE(made);
+  EXPECT_LT(glm::distance(made->network.mounts[0].cameraFromBody.translation, mountTruth().translation), 1e-12);
+  ASSERT_TRUE(refineNetwork(site.project, *made, {}, false, {}));
+  EXPECT_EQ(site.project.cameras[1].mount->body, "IMU");
+  EXPECT_LT(glm::distance(site.project.cameras[1].mount->cameraFromBody.centre(), (mountTruth() * sensor).centre()), 1e-3);
+}
+
 TEST(RigNetwork, WhatIsLockedStaysAndTheResidualsShowIt) {
   const RigSite site;
   const auto solved = [&](const MotionTies& ties) {

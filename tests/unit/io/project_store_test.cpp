@@ -75,6 +75,9 @@ std::string printed(Project project) {
     CameraRow row{camera.id, camera.name, camera.camera.intrinsics()};
     visit(p, row);
     p("readout", camera.readoutSecs);
+    if (!camera.mount) continue;
+    CameraMountRow mount{0, *camera.mount};
+    visit(p, mount);
   }
   p.list("videos", project.videos);
   for (Video& video : project.videos) p.choice("timing", video.timing, {});
@@ -161,6 +164,7 @@ Project fullProject(const TestFolder& folder) {
   for (auto& video : project.videos) visit(fill, video), video.source.path = folder / "v.mp4";
   project.videos[1].timing = FrameTiming::Table;
   project.cameras[2].readoutSecs = 0.0123456789;
+  project.cameras[1].mount = CameraMount{"IMU", somePose(0.4), {1e-3, 2e-3, 3e-3}, {1e-4, 2e-4, 3e-4}};
   project.trajectories.resize(2);
   for (auto& trajectory : project.trajectories) visit(fill, trajectory), trajectory.source.path = folder / "t.txt";
   project.trajectories[0].clockOffsetStdSecs.reset();
@@ -344,9 +348,9 @@ TEST(ProjectStore, ReadsAProjectOfVersionTwo) {
   const std::string path = savedProject(folder);
   const auto whole = loadProject(path);
   ASSERT_TRUE(whole) << whole.error().text();
-  for (const char* column : {"kind", "e2", "n2", "h2", "sigma_m", "held_out"})
+  for (const char* column : {"depth_m", "kind", "e2", "n2", "h2", "sigma_m", "held_out"})
     tamper(path, QStringLiteral("ALTER TABLE observation DROP COLUMN %1").arg(column));
-  for (const char* table : {"camera_shutter", "video_timing", "trajectory", "trajectory_pose", "frame_trajectory"})
+  for (const char* table : {"camera_shutter", "camera_mount", "video_timing", "trajectory", "trajectory_pose", "frame_trajectory"})
     tamper(path, QStringLiteral("DROP TABLE %1").arg(table));
   // Of this version the columns are missed, of an older one they take their defaults.
   EXPECT_FALSE(loadProject(path));
@@ -378,6 +382,24 @@ TEST(ProjectStore, ReadsAProjectOfVersionThree) {
   const auto loaded = loadProject(path);
   ASSERT_TRUE(loaded) << loaded.error().text();
   EXPECT_EQ(loaded->display.levelThreshold, LevelThreshold::ByDistance);
+}
+
+TEST(ProjectStore, ReadsAProjectOfVersionFour) {
+  const TestFolder folder;
+  Project project = *loadProject(savedProject(folder));
+  ASSERT_FALSE(project.observations.empty());
+  project.observations[0].kind = ObservedKind::Depth, project.observations[0].depthM = 7.5;
+  const std::string path = folder / "depth.alidade";
+  ASSERT_TRUE(saveProject(project, path));
+  EXPECT_EQ(loadProject(path)->observations[0].depthM, 7.5);
+  tamper(path, "ALTER TABLE observation DROP COLUMN depth_m");
+  tamper(path, "DROP TABLE camera_mount");
+  EXPECT_FALSE(loadProject(path));
+  tamper(path, "PRAGMA user_version = 4");
+  const auto loaded = loadProject(path);
+  ASSERT_TRUE(loaded) << loaded.error().text();
+  EXPECT_EQ(loaded->observations[0].depthM, 0);
+  EXPECT_FALSE(loaded->cameras[1].mount);
 }
 
 TEST(ProjectStore, RefusesEveryTruncation) {
@@ -418,6 +440,8 @@ TEST(ProjectStore, RefusesWrongValuesByTableAndColumn) {
       {"UPDATE trajectory_pose SET time_s = NULL", "time_s"},
       {"UPDATE trajectory SET clock_offset_s = 'late'", "clock_offset_s"},
       {"UPDATE camera_shutter SET readout_s = 9e999", "readout_s"},
+      {"UPDATE camera_mount SET camera = 3", "belongs to nothing"},
+      {"UPDATE camera_mount SET qw = 9e999", "qw"},
       {"UPDATE video_timing SET timing = 'guessed'", "timing"},
       {"UPDATE frame_trajectory SET frame = -1", "belongs to nothing"},
       {"ALTER TABLE video ADD COLUMN bomb GENERATED ALWAYS AS (zeroblob(1000000000))", "video"},
