@@ -101,6 +101,36 @@ TEST_F(RefineSequence, TakesADriftOutOfAWalk) {
   EXPECT_EQ(smooth, 2);
 }
 
+TEST_F(RefineSequence, TwoCamerasOnOneRigFindWhereTheySit) {
+  m_project.cameras.push_back(m_project.cameras.front());
+  m_project.cameras.back().id = CameraId{2}, m_project.cameras.back().name = "right";
+  const RigidTransform mount{glm::normalize(glm::dquat(1, 0.01, -0.03, 0.02)), {-0.3, 0.02, 0.04}};
+  RigidTransform believed = mount;  // 3 cm and 0.6° off
+  believed.rotation = glm::normalize(glm::angleAxis(0.01, glm::dvec3(0.6, 0.8, 0)) * mount.rotation);
+  believed.translation += glm::dvec3(0.02, -0.02, 0.01);
+  for (int i = 0; i < 4; ++i)
+    for (const unsigned camera : {1u, 2u}) {
+      add(camera == 1 ? along(i) : mount * along(i), camera == 1 ? along(i) : believed * along(i));
+      m_project.frames.back().camera = CameraId{camera};
+      m_project.frames.back().timeSecs = 0.5 * i;
+    }
+  SequenceOptions options;
+  options.ties.rig = options.ties.freeMounts = true;
+  const auto summary = refineSequence(m_project, s_scene, m_pictures, options, false, Progress());
+  ASSERT_TRUE(summary) << summary.error().text();
+  ASSERT_TRUE(summary->converged) << summary->report(m_project);
+  EXPECT_EQ(summary->network.poses.size(), 4u) << "one body a moment";
+  ASSERT_EQ(summary->adjustment.cameraFromBody.size(), 1u);
+  EXPECT_LT(glm::distance(summary->adjustment.cameraFromBody[0].centre(), mount.centre()), 0.003);
+  EXPECT_LT(rotationAngleBetween(summary->adjustment.cameraFromBody[0], mount), 5e-4);
+  for (std::size_t i = 0; i < m_truth.size(); ++i) EXPECT_LT(errorPx(i), 0.5) << summary->report(m_project);
+  ASSERT_TRUE(m_project.cameras[1].mount);
+  EXPECT_EQ(m_project.cameras[1].mount->body, "camera");
+  EXPECT_EQ(m_project.cameras[1].mount->cameraFromBody.translation, summary->adjustment.cameraFromBody[0].translation);
+  const RigidTransform between = *m_project.frames[1].cameraFromWorld * m_project.frames[0].cameraFromWorld->inverse();
+  EXPECT_LT(glm::distance(between.translation, summary->adjustment.cameraFromBody[0].translation), 1e-8) << "rigid";
+}
+
 TEST_F(RefineSequence, RaisesAnAlarmWhereAFixedCameraWasPushed) {
   RigidTransform pushed = along(0);
   pushed.rotation = glm::normalize(glm::angleAxis(0.004, glm::dvec3(0, 1, 0)) * pushed.rotation);
