@@ -6,7 +6,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <random>
+
+#include "adjust/robust.h"
 
 namespace alidade {
 
@@ -122,10 +125,11 @@ Consensus findConsensus(const PoseProblem& problem, const std::vector<int>& usab
   solveWith(options.huberSigmas);
   if (options.huberSigmas <= 0) return found;
   const double limit = options.outlierSigmas;
-  const std::vector<int> near = within(problem, found.state, usable, limit);
+  // Of many, a few right ones lie beyond the limit by chance: they are no sign that the pose is wrong.
+  std::vector<int> near = within(problem, found.state, usable, n < 50 ? limit : std::max(limit, chanceLimit(usable.size())));
   if (static_cast<int>(near.size()) == n) return found;
   if (n >= 50 && 10 * static_cast<int>(near.size()) >= 9 * n) {
-    found.inliers = near;
+    found.inliers = std::move(near);
     return found;
   }
 

@@ -210,37 +210,40 @@ Result<ResectionSummary> resect(const Camera& camera, const RigidTransform& star
   for (const ResectionObservation& o : observations) picks.push_back({0, o.pixel, o.world, o.name});
   if (const auto twins = warningOfTwins(std::move(picks))) summary.warnings.push_back(*twins);
   const PoseState start = problem.startState();
-  summary.residuals = residualsAt(problem, start);
+  const auto refusedAtStart = [&](std::string reason) {
+    summary.residuals = residualsAt(problem, start);
+    return refused(std::move(summary), std::move(reason));
+  };
 
   std::vector<int> all(problem.size()), usable;
   std::iota(all.begin(), all.end(), 0);
   for (const int i : all)
     if (std::isfinite(problem.sigmas(start, i))) usable.push_back(i);
-  if (const auto why = refusalOfGeometry(problem, all)) return refused(summary, *why);
-  if (const auto why = refusalOfSide(problem, usable)) return refused(summary, *why);
-  if (const auto why = refusalOfGeometry(problem, usable)) return refused(summary, *why);
+  if (const auto why = refusalOfGeometry(problem, all)) return refusedAtStart(*why);
+  if (const auto why = refusalOfSide(problem, usable)) return refusedAtStart(*why);
+  if (const auto why = refusalOfGeometry(problem, usable)) return refusedAtStart(*why);
   if (!problem.covariance(problem.normalMatrix(start, usable)))
-    return refused(summary, *refusalOfWeakness(problem, start, usable, 1));
+    return refusedAtStart(*refusalOfWeakness(problem, start, usable, 1));
 
   Consensus consensus = findConsensus(problem, usable, options);
   summary.iterations = consensus.iterations;
   const int agreeing = static_cast<int>(consensus.inliers.size());
   if (agreeing < problem.pointsNeeded() || 5 * agreeing < 2 * problem.size())
-    return refused(summary, fmt::format("Only {} of {} observations agree with one pose; check the picks, the point "
-                                        "numbers and the start pose", agreeing, problem.size()));
+    return refusedAtStart(fmt::format("Only {} of {} observations agree with one pose; check the picks, the point "
+                                      "numbers and the start pose", agreeing, problem.size()));
   if (const auto why = refusalOfTwoPoses(problem, consensus.state, consensus.inliers, consensus.scale))
-    return refused(summary, *why);
+    return refusedAtStart(*why);
   problem.weighAt(consensus.state);
   const double limit = std::max(options.outlierSigmas, chanceLimit(usable.size())) * consensus.scale;
   const Adjusted done = adjust(problem, consensus.state, consensus.inliers, usable, limit, options);
   summary.iterations += done.iterations;
   if (!done.solution.converged)
-    return refused(summary, fmt::format("The solution did not settle within {} iterations; give a better start pose",
-                                        options.maximumIterations));
-  if (const auto why = refusalOfGeometry(problem, done.inliers)) return refused(summary, *why);
+    return refusedAtStart(fmt::format("The solution did not settle within {} iterations; give a better start pose",
+                                      options.maximumIterations));
+  if (const auto why = refusalOfGeometry(problem, done.inliers)) return refusedAtStart(*why);
   const double sigma0 = sigma0Of(problem, done), sigmaScale = consensus.scale > 1 ? std::max(1.0, sigma0) : 1;
   if (const auto why = refusalOfWeakness(problem, done.solution.state, done.inliers, sigmaScale))
-    return refused(summary, *why);
+    return refusedAtStart(*why);
 
   summary.converged = true;
   summary.sigma0 = sigma0, summary.sigmaScale = sigmaScale;

@@ -5,6 +5,7 @@
 
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "adjust/pose_problem.h"
@@ -35,7 +36,7 @@ struct KnownPick {
   int frame = 0;
   glm::dvec2 pixel{0};
   glm::dvec3 world{0};
-  std::string name;
+  std::string_view name;
 };
 /// The same pixel and point under several names counts as often: a sentence, or nothing.
 std::optional<std::string> warningOfTwins(std::vector<KnownPick> picks);
