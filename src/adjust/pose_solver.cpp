@@ -98,6 +98,20 @@ double robustScale(const PoseProblem& problem, const PoseState& state, const std
   return smallSample * medianSigmas(problem, state, usable, rank) / 1.1774;
 }
 
+/// Negative logarithm of the likelihood, up to a constant: picks within the limit are normal with the given sigmas times
+/// `scale`, the others lie anywhere in the picture.
+double surprise(const PoseProblem& problem, const PoseState& state, const std::vector<int>& usable, double limit, double scale) {
+  const double picture = static_cast<double>(problem.camera().width()) * problem.camera().height();
+  double sum = 0;
+  for (const int i : usable) {
+    const double s = problem.sigmas(state, i) / scale;
+    // The density of a normal pick: the root of its weight's determinant over 2 pi scale².
+    const double density = std::sqrt(glm::determinant(problem.weight(i))) / (2 * std::numbers::pi * scale * scale);
+    sum += s <= limit ? 0.5 * s * s - std::log(density) : std::log(picture);
+  }
+  return sum;
+}
+
 }  // namespace
 
 PoseSolution solvePose(const PoseProblem& problem, const PoseState& start, const std::vector<int>& chosen,
@@ -147,13 +161,16 @@ Consensus findConsensus(const PoseProblem& problem, const std::vector<int>& usab
   }
   found.state = best.state;
   found.inliers = within(problem, best.state, usable, limit);
-  // A half of right picks misses one or two beyond the limit by chance.
-  if (7 * static_cast<int>(found.inliers.size()) >= 3 * n || !std::isfinite(leastScale)) return found;
+  // A half of right picks misses one or two beyond the limit by chance. Where sigmas are too small, as many may agree by
+  // chance; where three fifths do, it is none.
+  const int agree = static_cast<int>(found.inliers.size());
+  if (5 * agree >= 3 * n || !std::isfinite(leastScale)) return found;
 
   const double scale = std::clamp(leastScale, 1.0, largestScale);
   const PoseState wide = settled(problem, median.state, usable, limit * scale);
   std::vector<int> agreeing = within(problem, wide, usable, limit * scale);
   if (2 * static_cast<int>(agreeing.size()) < n) return found;
+  if (7 * agree >= 3 * n && surprise(problem, found.state, usable, limit, 1) <= surprise(problem, wide, usable, limit, scale)) return found;
   found.state = wide;
   found.inliers = std::move(agreeing);
   found.scale = scale;

@@ -25,6 +25,12 @@ struct Squares {
   }
 };
 
+bool holds(const PositionEllipse& e, const std::array<double, 6>& error) {
+  const double s = std::sin(e.azimuthRad), c = std::cos(e.azimuthRad);
+  const double along = (s * error[0] + c * error[1]) / e.semiMajorM, across = (c * error[0] - s * error[1]) / e.semiMinorM;
+  return along * along + across * across <= 1;
+}
+
 /// Trace of the inverse Fisher information of the picks at the true pose, by differences of the camera's own projection.
 std::array<double, 2> cramerRao(const Site& site) {
   Eigen::Matrix<double, 6, 6> information = Eigen::Matrix<double, 6, 6>::Zero();
@@ -59,11 +65,8 @@ TEST(SlowStatistics, TwoThousandScenesReachTheCramerRaoBoundAndOpenCv) {
     worse += std::sqrt(one.position) > 1.0001 * std::sqrt(other.position) + 1e-9;
     const auto bound = cramerRao(site);
     boundPosition += bound[0], boundRotation += bound[1];
-    const PositionEllipse& e = summary->ellipse;
-    const double s = std::sin(e.azimuthRad), c = std::cos(e.azimuthRad);
-    const double along = (s * error[0] + c * error[1]) / e.semiMajorM, across = (c * error[0] - s * error[1]) / e.semiMinorM;
-    held += along * along + across * across <= 1;
-    heldHeight += std::abs(error[2]) <= e.heightM;
+    held += holds(summary->ellipse, error);
+    heldHeight += std::abs(error[2]) <= summary->ellipse.heightM;
   }
   const double position = std::sqrt(ours.position / boundPosition), rotation = std::sqrt(ours.rotation / boundRotation);
   std::printf("2000 scenes: rms error / Cramer-Rao bound %.4f position, %.4f attitude; / OpenCV's %.6f, %.6f; scenes "
@@ -118,10 +121,7 @@ TEST(SlowStatistics, EllipsesOfABundlesPosesHoldTheTruth) {
     for (std::size_t i = 0; i < site.poses.size(); ++i) {
       const AdjustedPose& pose = summary->poses[i];
       const auto error = poseError(pose.bodyFromWorld, site.poses[i]);
-      const double s = std::sin(pose.ellipse.azimuthRad), c = std::cos(pose.ellipse.azimuthRad);
-      const double along = (s * error[0] + c * error[1]) / pose.ellipse.semiMajorM;
-      const double across = (c * error[0] - s * error[1]) / pose.ellipse.semiMinorM;
-      held += along * along + across * across <= 1;
+      held += holds(pose.ellipse, error);
       ++poses;
       Eigen::Matrix<double, 6, 6> covariance;
       Eigen::Matrix<double, 6, 1> e;
@@ -136,6 +136,38 @@ TEST(SlowStatistics, EllipsesOfABundlesPosesHoldTheTruth) {
               "normalised squared error %.3f of 6\n", trials, 100.0 * held / poses, poses, nees / poses);
   EXPECT_GE(held, 0.93 * poses);
   EXPECT_LE(held, 0.97 * poses);
+}
+
+/// Sigmas too small by five: the residuals say so, and the ellipses grow with them.
+TEST(SlowStatistics, EllipsesHoldTheTruthWhereTheSigmasWereTooSmall) {
+  int held = 0, scaled = 0, heldInBundles = 0, scaledBundles = 0, poses = 0;
+  for (unsigned seed = 1; seed <= scenes; ++seed) {
+    Site site = randomSite(seed, 40, 0.5);
+    for (ResectionObservation& pick : site.picks) pick.sigmaPx = 0.1;
+    const auto summary = resect(site.camera, site.start, site.picks);
+    ASSERT_TRUE(summary && summary->converged) << seed << ": " << summary->reason;
+    scaled += summary->sigmaScale > 1;
+    held += holds(summary->ellipse, poseError(summary->cameraFromWorld, site.truth));
+  }
+  constexpr unsigned trials = 300;
+  for (unsigned seed = 1; seed <= trials; ++seed) {
+    NetworkSiteOptions options;
+    options.seed = seed, options.controls = 8, options.ties = 40, options.controlSigmaM = 0.01;
+    NetworkSite site = arcSite(options);
+    for (PictureObservation& o : site.network.observations) o.sigmaPx /= 5;
+    for (NetworkPoint& p : site.network.points) p.sigmaM /= 5.0;
+    const auto summary = adjustNetwork(site.network);
+    ASSERT_TRUE(summary && summary->converged) << seed;
+    scaledBundles += summary->sigmaScale > 1;
+    for (std::size_t i = 0; i < site.poses.size(); ++i, ++poses)
+      heldInBundles += holds(summary->poses[i].ellipse, poseError(summary->poses[i].bodyFromWorld, site.poses[i]));
+  }
+  std::printf("sigmas five times too small: %d of %u scenes of 40 picks and %d of %u bundles scaled by sigma naught; ellipses hold %.2f %%, "
+              "of %d poses in bundles %.2f %%\n", scaled, scenes, scaledBundles, trials, 100.0 * held / scenes, poses, 100.0 * heldInBundles / poses);
+  EXPECT_GE(held, 0.93 * scenes);
+  EXPECT_LE(held, 0.97 * scenes);
+  EXPECT_GE(heldInBundles, 0.93 * poses);
+  EXPECT_LE(heldInBundles, 0.97 * poses);
 }
 
 }  // namespace
