@@ -50,13 +50,7 @@ std::vector<std::byte> encodePointwise(const std::vector<Item>& items, const std
   for (std::size_t i = 1; i < count; ++i) {
     std::byte* at = scratch.data();
     std::memcpy(at, records + i * record, record);
-    coded.codeAttributes(coder, at);
-    coded.codeX(coder, at);
-    coded.codeY(coder, at);
-    coded.codeZ(coder, at);
-    coded.codeTime(coder, at);
-    coded.codeColour(coder, at);
-    coded.codeOthers(coder, at);
+    coded.code(coder, at);
   }
   std::vector<std::byte> out(records, records + record);
   const auto stream = coder.finish();

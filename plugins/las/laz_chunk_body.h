@@ -59,38 +59,50 @@ class PointwiseItems {
     if (m_extra.size() > 0) m_extra.start(first + m_extraAt);
   }
 
-  // A point in parts, so that two decoders can take turns.
-  template <class Coder>
-  void codeAttributes(Coder& coder, std::byte* at) {
-    m_point.codeAttributes(coder, at);
+  /// Calls `visit` with the steps of a point in their order. Two decoders take turns after each.
+  template <class Visit>
+  static void eachStep(const Visit& visit) {
+    using Items = PointwiseItems;
+    stepsOf<Point>([&](const auto& step) {
+      visit([&](Items& items, auto& coder, std::byte* at) { step(items.m_point, coder, at); });
+    });
+    stepsOf<Time>([&](const auto& step) {
+      visit([&](Items& items, auto& coder, std::byte* at) {
+        if (items.m_hasTime) step(items.m_time, coder, at + Point::kSize);
+      });
+    });
+    stepsOf<Colour>([&](const auto& step) {
+      visit([&](Items& items, auto& coder, std::byte* at) {
+        if (items.m_hasColour) step(items.m_colour, coder, at + items.m_colourAt);
+      });
+    });
+    visit([](Items& items, auto& coder, std::byte* at) {
+      if (items.m_hasWave || items.m_extra.size() > 0)
+        codeAside(coder, [&](auto& local) {
+          if (items.m_hasWave) items.m_wave.code(local, at + items.m_waveAt);
+          if (items.m_extra.size() > 0) items.m_extra.code(local, at + items.m_extraAt);
+        });
+    });
   }
+
+  /// All steps.
   template <class Coder>
-  void codeX(Coder& coder, std::byte* at) {
-    m_point.codeX(coder, at);
-  }
-  template <class Coder>
-  void codeY(Coder& coder, std::byte* at) {
-    m_point.codeY(coder, at);
-  }
-  template <class Coder>
-  void codeZ(Coder& coder, std::byte* at) {
-    m_point.codeZ(coder, at);
-  }
-  template <class Coder>
-  void codeTime(Coder& coder, std::byte* at) {
-    if (m_hasTime) m_time.code(coder, at + Point::kSize);
-  }
-  template <class Coder>
-  void codeColour(Coder& coder, std::byte* at) {
-    if (m_hasColour) m_colour.code(coder, at + m_colourAt);
-  }
-  template <class Coder>
-  void codeOthers(Coder& coder, std::byte* at) {
-    if (m_hasWave) m_wave.code(coder, at + m_waveAt);
-    if (m_extra.size() > 0) m_extra.code(coder, at + m_extraAt);
+  void code(Coder& coder, std::byte* at) {
+    eachStep([&](const auto& step) { step(*this, coder, at); });
   }
 
  private:
+  /// An item that takes no turns within itself has one step.
+  template <class Item, class Visit>
+  static void stepsOf(const Visit& visit) {
+    if constexpr (requires { Item::eachStep(visit); })
+      Item::eachStep(visit);
+    else
+      visit([](Item& item, auto& coder, std::byte* at) {
+        codeAside(coder, [&](auto& local) { item.code(local, at); });
+      });
+  }
+
   bool m_hasTime, m_hasColour, m_hasWave;
   std::size_t m_colourAt, m_waveAt, m_extraAt;
   Point m_point;
@@ -118,24 +130,19 @@ class PointwiseDecoder : public ChunkDecoder {
     return true;
   }
 
-  void decode(std::size_t count, std::byte* out) override {
+  // Flattened: what is not inlined would hold the decoders in memory.
+  [[gnu::flatten]] void decode(std::size_t count, std::byte* out) override {
     const std::size_t record = m_items.recordSize();
     if (takeFirst(count, out)) --count, out += record;
     Decoder coder = m_coder;
     for (; count > 0; --count, out += record) {
-      m_items.codeAttributes(coder, out);
-      m_items.codeX(coder, out);
-      m_items.codeY(coder, out);
-      m_items.codeZ(coder, out);
-      m_items.codeTime(coder, out);
-      m_items.codeColour(coder, out);
-      m_items.codeOthers(coder, out);
-      coder.hold();
+      m_items.code(coder, out);
+      m_end.hold(coder);
     }
     m_coder = coder;
   }
 
-  void decodeBoth(ChunkDecoder& otherDecoder, std::size_t count, std::byte* out, std::byte* otherOut) override {
+  [[gnu::flatten]] void decodeBoth(ChunkDecoder& otherDecoder, std::size_t count, std::byte* out, std::byte* otherOut) override {
     auto& other = static_cast<PointwiseDecoder&>(otherDecoder);
     const std::size_t record = m_items.recordSize();
     if (count == 0) return;
@@ -144,28 +151,18 @@ class PointwiseDecoder : public ChunkDecoder {
     if (first && otherFirst) --count, out += record, otherOut += record;
     Decoder a = m_coder, b = other.m_coder;
     for (; count > 0; --count, out += record, otherOut += record) {
-      m_items.codeAttributes(a, out);
-      other.m_items.codeAttributes(b, otherOut);
-      m_items.codeX(a, out);
-      other.m_items.codeX(b, otherOut);
-      m_items.codeY(a, out);
-      other.m_items.codeY(b, otherOut);
-      m_items.codeZ(a, out);
-      other.m_items.codeZ(b, otherOut);
-      m_items.codeTime(a, out);
-      other.m_items.codeTime(b, otherOut);
-      m_items.codeColour(a, out);
-      other.m_items.codeColour(b, otherOut);
-      m_items.codeOthers(a, out);
-      other.m_items.codeOthers(b, otherOut);
-      a.hold();
-      b.hold();
+      Items::eachStep([&](const auto& step) {
+        step(m_items, a, out);
+        step(other.m_items, b, otherOut);
+      });
+      m_end.hold(a);
+      other.m_end.hold(b);
     }
     m_coder = a;
     other.m_coder = b;
   }
 
-  bool overran() const override { return m_started && m_coder.overran(); }
+  bool overran() const override { return m_started && m_end.isBefore(m_coder); }
   std::size_t taken() const override {
     return m_started ? static_cast<std::size_t>(m_coder.position() - m_chunk.data()) : 0;
   }
@@ -177,7 +174,8 @@ class PointwiseDecoder : public ChunkDecoder {
     m_started = true;
     const std::size_t record = m_items.recordSize();
     std::memcpy(out, m_first, record);
-    m_coder = Decoder(m_chunk.subspan(record));
+    m_coder = Decoder(m_chunk.data() + record);
+    m_end = StreamEnd(m_chunk);
     return true;
   }
 
@@ -186,6 +184,7 @@ class PointwiseDecoder : public ChunkDecoder {
   const std::byte* m_first = nullptr;
   bool m_started = false;
   Decoder m_coder;
+  StreamEnd m_end;
 };
 
 /// The formats 6-10: layers.
@@ -255,7 +254,7 @@ class LayeredDecoder : public ChunkDecoder {
       const std::size_t size = load<std::uint32_t>(chunk.data() + record + 4 + 4 * i);
       if (size > chunk.size() - at) return false;
       layers[i].present = size > 0;
-      if (size > 0) layers[i].coder = Decoder(chunk.subspan(at, size));
+      if (size > 0) layers[i].coder = Decoder(chunk.data() + at), layers[i].end = StreamEnd(chunk.subspan(at, size));
       at += size;
     }
     m_taken = at;
@@ -274,7 +273,7 @@ class LayeredDecoder : public ChunkDecoder {
     }
     while (count > 0) {
       for (std::size_t some = std::min<std::size_t>(count, 64); some > 0; --some, --count, out += record) m_items.code(out);
-      for (auto& layer : m_items.layers()) layer.coder.hold();
+      for (auto& layer : m_items.layers()) layer.end.hold(layer.coder);
     }
   }
 
@@ -286,7 +285,7 @@ class LayeredDecoder : public ChunkDecoder {
 
   bool overran() const override {
     for (const auto& layer : m_items.layers())
-      if (layer.present && layer.coder.overran()) return true;
+      if (layer.present && layer.end.isBefore(layer.coder)) return true;
     return false;
   }
   std::size_t taken() const override { return m_taken; }

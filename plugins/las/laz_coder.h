@@ -22,47 +22,39 @@ constexpr std::uint32_t kMinLength = 1u << 24;
 /// Range decoder of the LASzip specification. Decoder and encoder have the same methods, so that one text of an item
 /// serves both: each takes the value to encode and returns the value coded, which the decoder makes up alone.
 ///
-/// Never fails: past the end it reads what stands there, and `overran` tells.
+/// Never fails: past the end it reads what stands there (see StreamEnd). Nothing
+/// in here branches: what would be decided is as good as random, and a wrong guess costs as much as half a symbol.
 class Decoder {
  public:
   static constexpr bool kEncodes = false;
 
   Decoder() = default;
-  /// kPadding bytes behind `bytes` must be readable.
-  explicit Decoder(std::span<const std::byte> bytes)
-      : m_at(bytes.data()), m_end(bytes.data() + bytes.size()), m_limit(m_end + 4) {
+  /// Four bytes must be readable.
+  explicit Decoder(const std::byte* at) : m_at(at + 4) {
     // The format's values are below the length; no damaged one shall be otherwise.
-    m_value = std::min(next(), m_length - 1);
-    m_at = bytes.size() < 4 ? m_limit : m_at + 4;
+    m_value = std::min(bigEndian(at), length() - 1);
   }
 
-  bool overran() const { return m_at > m_end; }
-  /// To be called after each point: goes back to the end where it was passed.
-  void hold() { m_at = std::min(m_at, m_limit); }
   /// Behind the last byte taken.
   const std::byte* position() const { return m_at; }
+  void goBackTo(const std::byte* limit) { m_at = std::min(m_at, limit); }
 
   template <int Capacity>
   [[gnu::always_inline]] unsigned symbol(SymbolModel<Capacity>& model, unsigned = 0) {
-    const std::uint32_t step = m_length >> 15;
-    const unsigned symbol = model.find(m_value / step);
-    const std::uint32_t low = model.low(symbol) * step;
-    // Both are worked out, so that no branch is guessed; what stands behind the last symbol is not used.
-    std::uint32_t high = model.low(symbol + 1) * step;
-    high = symbol == model.last() ? m_length : high;
-    m_value -= low;
-    m_length = high - low;
-    normalise();
+    const std::uint32_t step = length() >> 15;
+    const auto [symbol, low, next] = model.find(value() / step);
+    // The last symbol has all that is left.
+    const std::uint32_t isLast = 0 - (next >> 15), left = length() - kBeyond * step;
+    narrow(low * step, (next - low) * step + (left & isLast));
     model.learn(symbol);
     return symbol;
   }
 
   [[gnu::always_inline]] unsigned bit(BitModel& model, unsigned = 0) {
-    const std::uint32_t zeros = model.zeroShare() * (m_length >> 13);
-    const unsigned bit = m_value >= zeros;
-    m_value -= bit ? zeros : 0;
-    m_length = bit ? m_length - zeros : zeros;
-    normalise();
+    const std::uint32_t zeros = model.zeroShare() * (length() >> 13);
+    const unsigned bit = value() >= zeros;
+    const std::uint32_t isOne = 0 - bit;
+    narrow(zeros & isOne, ((length() - zeros) & isOne) | (zeros & ~isOne));
     model.learn(bit);
     return bit;
   }
@@ -77,31 +69,46 @@ class Decoder {
 
  private:
   [[gnu::always_inline]] std::uint32_t fewBits(unsigned count) {
-    m_length >>= count;
-    const std::uint32_t number = m_value / m_length;
-    m_value -= m_length * number;
-    normalise();
+    const std::uint32_t step = length() >> count, number = value() / step;
+    narrow(number * step, step);
     return number & ((1u << count) - 1);
   }
 
-  std::uint32_t next() const {
+  static std::uint32_t bigEndian(const std::byte* at) {
     std::uint32_t bytes;
-    std::memcpy(&bytes, m_at, 4);
+    std::memcpy(&bytes, at, 4);
     return __builtin_bswap32(bytes);
   }
 
-  /// Takes in as many bytes as the length has lost. Without a branch: whether one is due is as good as random.
-  [[gnu::always_inline]] void normalise() {
-    const unsigned shift = static_cast<unsigned>(__builtin_clz(m_length)) & 24u;
-    m_value = m_value << shift | (next() >> 1) >> (31 - shift);
-    m_length <<= shift;
+  std::uint32_t value() const { return static_cast<std::uint32_t>(m_value); }
+  std::uint32_t length() const { return static_cast<std::uint32_t>(m_length); }
+
+  /// Goes on with the part from `low` of this length, and takes in as many bytes as the length has lost.
+  [[gnu::always_inline]] void narrow(std::uint32_t low, std::uint32_t length) {
+    const unsigned shift = static_cast<unsigned>(__builtin_clz(length)) & 24u;
+    const auto taken = static_cast<std::uint32_t>(std::uint64_t{bigEndian(m_at)} << shift >> 32);
+    m_value = (value() - low) << shift | taken;
+    m_length = length << shift;
     m_at += shift >> 3;
   }
 
-  std::uint32_t m_value = 0, m_length = 0xFFFFFFFFu;
+  // Below 2^32. In words of their own: compilers pack two halves of a word into one register, and unpack them for each use.
+  std::uint64_t m_value = 0, m_length = 0xFFFFFFFFu;
   const std::byte* m_at = nullptr;
+};
+
+/// The end of a compressed stream; kPadding bytes behind it must be readable.
+class StreamEnd {
+ public:
+  StreamEnd() = default;
+  explicit StreamEnd(std::span<const std::byte> stream) : m_end(stream.data() + stream.size()) {}
+
+  bool isBefore(const Decoder& decoder) const { return decoder.position() > m_end; }
+  /// To be called after each point: goes back to the end, or a little behind it, where it was passed.
+  void hold(Decoder& decoder) const { decoder.goBackTo(m_end + 4); }
+
+ private:
   const std::byte* m_end = nullptr;
-  const std::byte* m_limit = nullptr;
 };
 
 /// Range encoder; see Decoder.
@@ -181,26 +188,29 @@ class Encoder {
   std::vector<std::byte> m_bytes;
 };
 
-/// Runs `body` with a decoder that lives in registers: a copy that no store to a record can alias.
+/// Runs `body`, which is rare, out of line and with a copy of the decoder: one whose address is never given away stays in
+/// registers.
 template <class Coder, class Body>
-[[gnu::always_inline]] inline auto inRegisters(Coder& coder, const Body& body) {
+[[gnu::noinline, gnu::cold]] void runAside(Coder& coder, const Body& body) {
+  body(coder);
+}
+template <class Coder, class Body>
+[[gnu::always_inline]] inline void codeAside(Coder& coder, const Body& body) {
   if constexpr (Coder::kEncodes) {
-    return body(coder);
+    body(coder);
   } else {
-    Coder local = coder;
-    body(local);
-    coder = local;
+    Coder copy = coder;
+    runAside(copy, body);
+    coder = copy;
   }
 }
 
-/// Codes `value`, a number of Bits bits, as its difference from `predicted`; leaves the number of the
-/// difference's bits in `model.k`.
+/// Codes `value`, a number of Bits bits, as its difference from `predicted`. In two steps, so that another decoder can
+/// take its turn between them; first the number k of bits that the difference takes, which is left in `model.k`.
 template <class Coder, int Bits, int Contexts>
-[[gnu::always_inline]] inline std::int32_t codeInteger(Coder& coder, IntegerModel<Bits, Contexts>& model,
-                                                       std::int32_t predicted, unsigned context,
-                                                       std::int32_t value = 0) {
+[[gnu::always_inline]] inline void codeWidth(Coder& coder, IntegerModel<Bits, Contexts>& model, std::int32_t predicted,
+                                             unsigned context, std::int32_t value = 0) {
   constexpr std::int64_t kRange = std::int64_t{1} << Bits;
-  std::uint32_t code = 0;
   unsigned k = 0;
   if constexpr (Coder::kEncodes) {
     std::int64_t difference = Bits == 32 ? static_cast<std::int32_t>(static_cast<std::uint32_t>(value) -
@@ -210,13 +220,21 @@ template <class Coder, int Bits, int Contexts>
     if (Bits < 32 && difference > kRange / 2 - 1) difference -= kRange;
     // k bits hold the differences from -(2^k - 1) to -2^(k-1) and from 2^(k-1) + 1 to 2^k; no bits 0 and 1.
     k = static_cast<unsigned>(std::bit_width(static_cast<std::uint32_t>(difference <= 0 ? -difference : difference - 1)));
-    code = static_cast<std::uint32_t>(k == 0 ? difference : difference < 0 ? difference + (std::int64_t{1} << k) - 1 : difference - 1);
+    model.code = static_cast<std::uint32_t>(k == 0 ? difference : difference < 0 ? difference + (std::int64_t{1} << k) - 1 : difference - 1);
   }
-  model.k = k = coder.symbol(model.width(context), k);
+  model.predicted = predicted;
+  model.k = coder.symbol(model.width(context), k);
+}
+
+/// Then the difference. Returns the value.
+template <class Coder, int Bits, int Contexts>
+[[gnu::always_inline]] inline std::int32_t codeCorrection(Coder& coder, IntegerModel<Bits, Contexts>& model) {
+  const unsigned k = model.k;
+  std::uint32_t code = model.code;
   std::int32_t difference;
   if (k == 0) {
     difference = static_cast<std::int32_t>(coder.bit(model.bit(), code));
-  } else if (k == 32) {
+  } else if (Bits == 32 && k == 32) {
     difference = INT32_MIN;
   } else {
     if (k <= 4) {
@@ -228,12 +246,21 @@ template <class Coder, int Bits, int Contexts>
       const std::uint32_t high = coder.symbol(model.large(k), code >> lower);
       code = high << lower | coder.bits(lower, code & ((1u << lower) - 1));
     }
-    difference = static_cast<std::int32_t>(code >= 1u << (k - 1) ? code + 1 : code - (1u << k) + 1);
+    // The lower half of the codes are the negative differences. Not as a branch: the sign is as good as random.
+    const std::uint32_t isNegative = ~code >> (k - 1) & 1;
+    difference = static_cast<std::int32_t>(code + 1 - (isNegative << k));
   }
-  if constexpr (Coder::kEncodes) return value;
-  const std::uint32_t sum = static_cast<std::uint32_t>(predicted) + static_cast<std::uint32_t>(difference);
-  if constexpr (Bits == 32) return static_cast<std::int32_t>(sum);
-  return static_cast<std::int32_t>(sum & static_cast<std::uint32_t>(kRange - 1));
+  const std::uint32_t sum = static_cast<std::uint32_t>(model.predicted) + static_cast<std::uint32_t>(difference);
+  return static_cast<std::int32_t>(sum & (0xFFFFFFFFu >> (32 - Bits)));
+}
+
+/// Both steps.
+template <class Coder, int Bits, int Contexts>
+[[gnu::always_inline]] inline std::int32_t codeInteger(Coder& coder, IntegerModel<Bits, Contexts>& model,
+                                                       std::int32_t predicted, unsigned context,
+                                                       std::int32_t value = 0) {
+  codeWidth(coder, model, predicted, context, value);
+  return codeCorrection(coder, model);
 }
 
 }  // namespace ALIDADE_LAZ_SET

@@ -79,59 +79,18 @@ class Point10 {
     renew(m_z);
   }
 
-  /// Everything but the coordinates; `at` is the record.
-  template <class Coder>
-  void codeAttributes(Coder& coder, std::byte* at) {
-    Fields now;
-    unsigned changed = 0;
-    if constexpr (Coder::kEncodes) {
-      now = Fields(at);
-      changed = (now.returns != m_last.returns) << 5 |
-                (now.intensity != m_intensities[returnContext(now.returns)]) << 4 |
-                (now.classification != m_last.classification) << 3 | (now.scanAngle != m_last.scanAngle) << 2 |
-                (now.userData != m_last.userData) << 1 | (now.pointSource != m_last.pointSource);
-    }
-    changed = coder.symbol(m_changed, changed);
-    if (changed & 32) codeByte(coder, m_returns, m_last.returns, now.returns);
-    m_context = returnContext(m_last.returns);
-    if (changed & 16)
-      m_intensities[m_context] = static_cast<std::uint16_t>(
-          codeInteger(coder, m_intensity, m_intensities[m_context], std::min(m_context, 3u), now.intensity));
-    if (changed & 15) codeRareAttributes(coder, changed, now);
-    if constexpr (!Coder::kEncodes) {
-      store(at + 12, m_intensities[m_context]);
-      store(at + 14, m_last.returns);
-      store(at + 15, m_last.classification);
-      store(at + 16, m_last.scanAngle);
-      store(at + 17, m_last.userData);
-      store(at + 18, m_last.pointSource);
-    }
-  }
-
-  template <class Coder>
-  void codeX(Coder& outer, std::byte* at) {
-    inRegisters(outer, [&](Coder& coder) __attribute__((always_inline)) {
-      codeDifference(coder, m_dx, m_xMedians[m_context], isSingle(), m_last.x, at);
-    });
-  }
-
-  template <class Coder>
-  void codeY(Coder& outer, std::byte* at) {
-    inRegisters(outer, [&](Coder& coder) __attribute__((always_inline)) {
-      codeDifference(coder, m_dy, m_yMedians[m_context], isSingle() + evenUpTo(m_dx.k, 20), m_last.y, at + 4);
-    });
-  }
-
-  template <class Coder>
-  void codeZ(Coder& coder, std::byte* at) {
-    std::int32_t value = 0;
-    if constexpr (Coder::kEncodes) value = load<std::int32_t>(at + 8);
-    std::int32_t& height = m_heights[std::abs((m_last.returns >> 3 & 7) - (m_last.returns & 7))];
-    inRegisters(coder, [&](Coder& local) __attribute__((always_inline)) {
-      value = codeInteger(local, m_z, height, isSingle() + evenUpTo((m_dx.k + m_dy.k) / 2, 18), value);
-    });
-    height = value;
-    if constexpr (!Coder::kEncodes) store(at + 8, value);
+  /// The steps of a record at `at`, in their order: each codes a symbol or two.
+  template <class Visit>
+  static void eachStep(const Visit& visit) {
+    visit([](Point10& p, auto& coder, std::byte* at) { p.codeChanged(coder, at); });
+    visit([](Point10& p, auto& coder, std::byte*) { p.codeReturns(coder); });
+    visit([](Point10& p, auto& coder, std::byte* at) { p.codeOtherAttributes(coder, at); });
+    visit([](Point10& p, auto& coder, std::byte* at) { p.codeXWidth(coder, at); });
+    visit([](Point10& p, auto& coder, std::byte* at) { p.codeX(coder, at); });
+    visit([](Point10& p, auto& coder, std::byte* at) { p.codeYWidth(coder, at); });
+    visit([](Point10& p, auto& coder, std::byte* at) { p.codeY(coder, at); });
+    visit([](Point10& p, auto& coder, std::byte* at) { p.codeZWidth(coder, at); });
+    visit([](Point10& p, auto& coder, std::byte* at) { p.codeZ(coder, at); });
   }
 
  private:
@@ -153,29 +112,101 @@ class Point10 {
   };
 
   template <class Coder>
-  void codeRareAttributes(Coder& coder, unsigned changed, const Fields& now) {
-    if (changed & 8) codeByte(coder, m_classification, m_last.classification, now.classification);
-    if (changed & 4) {
-      const auto difference = static_cast<std::uint8_t>(now.scanAngle - m_last.scanAngle);
-      m_last.scanAngle += static_cast<std::uint8_t>(coder.symbol(m_scanAngle[m_last.returns >> 6 & 1], difference));
+  void codeChanged(Coder& coder, const std::byte* at) {
+    if constexpr (Coder::kEncodes) {
+      m_now = Fields(at);
+      m_changedNow = (m_now.returns != m_last.returns) << 5 |
+                     (m_now.intensity != m_intensities[returnContext(m_now.returns)]) << 4 |
+                     (m_now.classification != m_last.classification) << 3 | (m_now.scanAngle != m_last.scanAngle) << 2 |
+                     (m_now.userData != m_last.userData) << 1 | (m_now.pointSource != m_last.pointSource);
     }
-    if (changed & 2) codeByte(coder, m_userData, m_last.userData, now.userData);
-    if (changed & 1)
-      m_last.pointSource =
-          static_cast<std::uint16_t>(codeInteger(coder, m_pointSource, m_last.pointSource, 0, now.pointSource));
+    m_changedNow = coder.symbol(m_changed, m_changedNow);
   }
 
+  template <class Coder>
+  void codeReturns(Coder& coder) {
+    if (m_changedNow & 32) codeByte(coder, m_returns, m_last.returns, m_now.returns);
+    m_context = returnContext(m_last.returns);
+    if (m_changedNow & 16)
+      codeWidth(coder, m_intensity, m_intensities[m_context], std::min(m_context, 3u), m_now.intensity);
+  }
+
+  template <class Coder>
+  void codeOtherAttributes(Coder& coder, std::byte* at) {
+    if (m_changedNow & 16) m_intensities[m_context] = static_cast<std::uint16_t>(codeCorrection(coder, m_intensity));
+    if (m_changedNow & 15) codeAside(coder, [&](Coder& local) { codeRareAttributes(local); });
+    if constexpr (!Coder::kEncodes) {
+      store(at + 12, m_intensities[m_context]);
+      store(at + 14, m_last.returns);
+      store(at + 15, m_last.classification);
+      store(at + 16, m_last.scanAngle);
+      store(at + 17, m_last.userData);
+      store(at + 18, m_last.pointSource);
+    }
+  }
+
+  template <class Coder>
+  void codeRareAttributes(Coder& coder) {
+    if (m_changedNow & 8) codeByte(coder, m_classification, m_last.classification, m_now.classification);
+    if (m_changedNow & 4) {
+      const auto difference = static_cast<std::uint8_t>(m_now.scanAngle - m_last.scanAngle);
+      m_last.scanAngle += static_cast<std::uint8_t>(coder.symbol(m_scanAngle[m_last.returns >> 6 & 1], difference));
+    }
+    if (m_changedNow & 2) codeByte(coder, m_userData, m_last.userData, m_now.userData);
+    if (m_changedNow & 1)
+      m_last.pointSource =
+          static_cast<std::uint16_t>(codeInteger(coder, m_pointSource, m_last.pointSource, 0, m_now.pointSource));
+  }
+
+  template <class Coder>
+  void codeXWidth(Coder& coder, const std::byte* at) {
+    codeStepWidth(coder, m_dx, m_xMedians[m_context], isSingle(), m_last.x, at);
+  }
+  template <class Coder>
+  void codeX(Coder& coder, std::byte* at) {
+    codeStep(coder, m_dx, m_xMedians[m_context], m_last.x, at);
+  }
+
+  template <class Coder>
+  void codeYWidth(Coder& coder, const std::byte* at) {
+    codeStepWidth(coder, m_dy, m_yMedians[m_context], isSingle() + evenUpTo(m_dx.k, 20), m_last.y, at + 4);
+  }
+  template <class Coder>
+  void codeY(Coder& coder, std::byte* at) {
+    codeStep(coder, m_dy, m_yMedians[m_context], m_last.y, at + 4);
+  }
+
+  template <class Coder>
+  void codeZWidth(Coder& coder, const std::byte* at) {
+    std::int32_t value = 0;
+    if constexpr (Coder::kEncodes) value = load<std::int32_t>(at + 8);
+    codeWidth(coder, m_z, height(), isSingle() + evenUpTo((m_dx.k + m_dy.k) / 2, 18), value);
+  }
+  template <class Coder>
+  void codeZ(Coder& coder, std::byte* at) {
+    height() = codeCorrection(coder, m_z);
+    if constexpr (!Coder::kEncodes) store(at + 8, height());
+  }
+
+  /// How far x or y has come since the last point.
   template <class Coder, int Contexts>
-  [[gnu::always_inline]] void codeDifference(Coder& coder, IntegerModel<32, Contexts>& model, StreamingMedian& median,
-                                             unsigned context, std::int32_t& last, std::byte* at) {
-    std::int32_t difference = 0;
-    if constexpr (Coder::kEncodes) difference = minus(load<std::int32_t>(at), last);
-    difference = codeInteger(coder, model, median.get(), context, difference);
-    last = plus(last, difference);
-    median.add(difference);
+  void codeStepWidth(Coder& coder, IntegerModel<32, Contexts>& model, const StreamingMedian& median,
+                                            unsigned context, std::int32_t last, const std::byte* at) {
+    std::int32_t step = 0;
+    if constexpr (Coder::kEncodes) step = minus(load<std::int32_t>(at), last);
+    codeWidth(coder, model, median.get(), context, step);
+  }
+  template <class Coder, int Contexts>
+  void codeStep(Coder& coder, IntegerModel<32, Contexts>& model, StreamingMedian& median,
+                                       std::int32_t& last, std::byte* at) {
+    const std::int32_t step = codeCorrection(coder, model);
+    last = plus(last, step);
+    median.add(step);
     if constexpr (!Coder::kEncodes) store(at, last);
   }
 
+  /// The last of the same height level: how many returns follow.
+  std::int32_t& height() { return m_heights[std::abs((m_last.returns >> 3 & 7) - (m_last.returns & 7))]; }
   unsigned isSingle() const { return (m_last.returns >> 3 & 7) == 1; }
 
   /// Number of returns and return number as one context of 16; row: of how many, column: which.
@@ -187,8 +218,8 @@ class Point10 {
     return kMap[returns >> 3 & 7][returns & 7];
   }
 
-  Fields m_last;
-  unsigned m_context = 0;
+  Fields m_last, m_now;  ///< m_now: encoding only
+  unsigned m_changedNow = 0, m_context = 0;
   std::array<std::uint16_t, 16> m_intensities;
   std::array<std::int32_t, 8> m_heights;
   std::array<StreamingMedian, 16> m_xMedians, m_yMedians;
@@ -221,18 +252,21 @@ class GpsTime {
     renew(m_numbers);
   }
 
+  template <class Visit>
+  static void eachStep(const Visit& visit) {
+    visit([](GpsTime& t, auto& coder, std::byte* at) { t.codeKind(coder, at); });
+    visit([](GpsTime& t, auto& coder, std::byte*) { t.codeMultipleWidth(coder); });
+    visit([](GpsTime& t, auto& coder, std::byte* at) { t.codeMultiple(coder, at); });
+  }
+
+  /// All steps.
   template <class Coder>
   void code(Coder& coder, std::byte* at) {
-    if constexpr (Coder::kEncodes) {
-      encode(coder, load<std::uint64_t>(at));
-    } else {
-      decode(coder);
-      store(at, m_times[m_sequence]);
-    }
+    eachStep([&](const auto& step) { step(*this, coder, at); });
   }
 
  private:
-  static constexpr int kMost = 500, kLeast = -10;
+  static constexpr int kMost = 500, kLeast = -10, kNone = kMost + 1;
   // Symbols behind the multiples 0..500 and -1..-10.
   static constexpr int kUnchanged = kMost - kLeast + 1;              // not Layered
   static constexpr int kFull = kUnchanged + (Layered ? 0 : 1);       // then three: another sequence
@@ -269,9 +303,28 @@ class GpsTime {
     m_extremes[m_sequence] = 0;
   }
 
-  /// A time `multiple` differences farther on, by more or less.
+  /// Times that are no multiple farther on are done with here.
   template <class Coder>
-  void codeMultiple(Coder& coder, int multiple, std::int32_t current) {
+  void codeKind(Coder& coder, const std::byte* at) {
+    m_multipleNow = kNone;
+    if constexpr (Coder::kEncodes) {
+      encode(coder, load<std::uint64_t>(at));
+    } else if (difference() == 0) {
+      codeAside(coder, [&](Decoder& local) { decodeStill(local, 4); });
+    } else {
+      const auto symbol = static_cast<int>(coder.symbol(m_multiple));
+      if (symbol < kUnchanged)
+        m_multipleNow = symbol <= kMost ? symbol : kMost - symbol;
+      else if (symbol >= kFull)
+        codeAside(coder, [&](Decoder& local) { decodeOther(local, symbol - kFull, 4); });
+    }
+  }
+
+  /// A time `m_multipleNow` differences farther on, by more or less.
+  template <class Coder>
+  void codeMultipleWidth(Coder& coder) {
+    const int multiple = m_multipleNow;
+    if (multiple == kNone) return;
     const unsigned context = multiple == 1       ? 1
                              : multiple == 0     ? 7
                              : multiple == kMost ? 4
@@ -279,33 +332,42 @@ class GpsTime {
                              : multiple > 0      ? 2
                              : multiple > kLeast ? 5
                                                  : 6;
-    current = codeInteger(coder, m_numbers, times(multiple, difference()), context, current);
-    m_times[m_sequence] += static_cast<std::uint64_t>(std::int64_t{current});
-    if (multiple == 1)
-      m_extremes[m_sequence] = 0;
-    else if (multiple == 0 || multiple == kMost || multiple == kLeast)
-      noteExtreme(current);
+    codeWidth(coder, m_numbers, times(multiple, difference()), context, m_now);
   }
 
   template <class Coder>
-  void decode(Coder& coder) {
-    // One change of sequence a time is all an encoder writes; damaged bytes shall not make a loop.
-    for (int change = 0; change < 4; ++change) {
-      if (difference() == 0) {
-        const int symbol = static_cast<int>(coder.symbol(m_still));
-        if (symbol < kStillShort) return;
-        if (symbol == kStillShort) return codeShort(coder, 0);
-        if (symbol == kStillFull) return codeFull(coder, 0);
-        m_sequence = (m_sequence + symbol - kStillFull) & 3;
-      } else {
-        const int symbol = static_cast<int>(coder.symbol(m_multiple));
-        if (symbol <= kMost) return codeMultiple(coder, symbol, 0);
-        if (symbol < kUnchanged) return codeMultiple(coder, kMost - symbol, 0);
-        if (symbol < kFull) return;
-        if (symbol == kFull) return codeFull(coder, 0);
-        m_sequence = (m_sequence + symbol - kFull) & 3;
-      }
+  void codeMultiple(Coder& coder, std::byte* at) {
+    if (m_multipleNow != kNone) {
+      const std::int32_t current = codeCorrection(coder, m_numbers);
+      m_times[m_sequence] += static_cast<std::uint64_t>(std::int64_t{current});
+      if (m_multipleNow == 1)
+        m_extremes[m_sequence] = 0;
+      else if (m_multipleNow == 0 || m_multipleNow == kMost || m_multipleNow == kLeast)
+        noteExtreme(current);
     }
+    if constexpr (!Coder::kEncodes) store(at, m_times[m_sequence]);
+  }
+
+  /// Where the sequence has stood still. One change of sequence a time is all an encoder writes; damaged bytes shall not
+  /// make a loop: at most `changes`.
+  void decodeStill(Decoder& coder, int changes) {
+    const auto symbol = static_cast<int>(coder.symbol(m_still));
+    if (symbol < kStillShort) return;
+    if (symbol == kStillShort) return codeShort(coder, 0);
+    decodeOther(coder, symbol - kStillFull, changes);
+  }
+
+  /// `sequences` on; 0: a whole new time.
+  void decodeOther(Decoder& coder, int sequences, int changes) {
+    if (sequences == 0) return codeFull(coder, 0);
+    m_sequence = (m_sequence + sequences) & 3;
+    if (changes == 1) return;
+    if (difference() == 0) return decodeStill(coder, changes - 1);
+    const auto symbol = static_cast<int>(coder.symbol(m_multiple));
+    if (symbol < kUnchanged)
+      m_multipleNow = symbol <= kMost ? symbol : kMost - symbol;
+    else if (symbol >= kFull)
+      decodeOther(coder, symbol - kFull, changes - 1);
   }
 
   template <class Coder>
@@ -331,7 +393,9 @@ class GpsTime {
                                        static_cast<float>(kLeast), static_cast<float>(kMost));
         const int multiple = static_cast<int>(ratio >= 0 ? ratio + 0.5f : ratio - 0.5f);
         coder.symbol(m_multiple, static_cast<unsigned>(multiple >= 0 ? multiple : kMost - multiple));
-        return codeMultiple(coder, multiple, current);
+        m_multipleNow = multiple;
+        m_now = current;
+        return;
       }
       const int other = sequenceNear(time);
       if (still)
@@ -353,6 +417,8 @@ class GpsTime {
   }
 
   int m_sequence = 0, m_next = 0;
+  int m_multipleNow = kNone;   ///< of the point that is being coded
+  std::int32_t m_now = 0;      ///< its difference; encoding only
   std::array<std::uint64_t, 4> m_times;  ///< the doubles' bits
   std::array<std::int32_t, 4> m_differences, m_extremes;
   SymbolModel<kFull + 4> m_multiple;
@@ -370,39 +436,79 @@ struct RgbModels {
   }
 };
 
-/// Codes `rgb` (filled when decoding) against `last`, which follows. The upper and lower bytes go their own ways;
-/// green and blue are predicted from what red and green did; a grey point says so in one bit.
+/// One colour, coded against the last. The upper and lower bytes go their own ways; green and blue are predicted from
+/// what red and green did; a grey point says so in one bit. Bytes are numbered as the record has them: red's lower,
+/// red's upper, green's lower ...
+class RgbCoding {
+ public:
+  /// The steps in their order: each codes a symbol. To be started before, finished behind.
+  template <class Visit>
+  static void eachStep(const Visit& visit) {
+    visit([](RgbCoding& c, auto& coder, RgbModels& models) { c.codeUsed(coder, models); });
+    visit([](RgbCoding& c, auto& coder, RgbModels& models) { c.codeByte<0>(coder, models); });
+    visit([](RgbCoding& c, auto& coder, RgbModels& models) { c.codeByte<1>(coder, models); });
+    visit([](RgbCoding& c, auto& coder, RgbModels& models) { c.codeByte<2>(coder, models); });
+    visit([](RgbCoding& c, auto& coder, RgbModels& models) { c.codeByte<4>(coder, models); });
+    visit([](RgbCoding& c, auto& coder, RgbModels& models) { c.codeByte<3>(coder, models); });
+    visit([](RgbCoding& c, auto& coder, RgbModels& models) { c.codeByte<5>(coder, models); });
+  }
+
+  /// `rgb` is read when encoding.
+  void start(const std::uint16_t* last, const std::uint16_t* rgb) {
+    for (int i = 0; i < 3; ++i) {
+      m_last[2 * i] = last[i] & 0xFF, m_last[2 * i + 1] = last[i] >> 8;
+      m_now[2 * i] = rgb[i] & 0xFF, m_now[2 * i + 1] = rgb[i] >> 8;
+    }
+  }
+  void finish(std::uint16_t* last) {
+    for (int i = 0; i < 3; ++i) last[i] = static_cast<std::uint16_t>(m_now[2 * i] | m_now[2 * i + 1] << 8);
+  }
+
+ private:
+  static constexpr unsigned kColoured = 64;
+
+  template <class Coder>
+  void codeUsed(Coder& coder, RgbModels& models) {
+    if constexpr (Coder::kEncodes) {
+      m_used = 0;
+      for (int i = 0; i < 6; ++i) m_used |= (m_now[i] != m_last[i]) << i;
+      if (m_now[0] != m_now[2] || m_now[0] != m_now[4] || m_now[1] != m_now[3] || m_now[1] != m_now[5]) m_used |= kColoured;
+    }
+    m_used = coder.symbol(models.used, m_used);
+  }
+
+  template <int I, class Coder>
+  void codeByte(Coder& coder, RgbModels& models) {
+    if (I >= 2 && !(m_used & kColoured)) {
+      m_now[I] = m_now[I % 2];
+      return;
+    }
+    if (!(m_used >> I & 1)) {
+      m_now[I] = m_last[I];
+      return;
+    }
+    int predicted = m_last[I];
+    if (I >= 2) {
+      int step = m_now[I % 2] - m_last[I % 2];
+      if (I >= 4) step = (step + m_now[I % 2 + 2] - m_last[I % 2 + 2]) / 2;
+      predicted = clampToByte(predicted + step);
+    }
+    const unsigned difference = coder.symbol(models.differences[I], static_cast<std::uint8_t>(m_now[I] - predicted));
+    m_now[I] = static_cast<std::uint8_t>(predicted + static_cast<int>(difference));
+  }
+
+  unsigned m_used = 0;
+  int m_last[6], m_now[6];
+};
+
+/// Codes `rgb` (filled when decoding) against `last`, which follows.
 template <class Coder>
 [[gnu::always_inline]] inline void codeRgb(Coder& coder, RgbModels& models, std::uint16_t* last, std::uint16_t* rgb) {
-  const auto byteOf = [](std::uint16_t v, int high) { return high ? v >> 8 : v & 0xFF; };
-  unsigned used = 0;
-  if constexpr (Coder::kEncodes) {
-    for (int i = 0; i < 6; ++i) used |= (byteOf(rgb[i / 2], i & 1) != byteOf(last[i / 2], i & 1)) << i;
-    used |= (rgb[0] != rgb[1] || rgb[0] != rgb[2]) << 6;
-  }
-  used = coder.symbol(models.used, used);
-  const auto code = [&](int i, int predicted) __attribute__((always_inline)) {
-    std::uint8_t difference = 0;
-    if constexpr (Coder::kEncodes) difference = static_cast<std::uint8_t>(byteOf(rgb[i / 2], i & 1) - predicted);
-    return static_cast<std::uint8_t>(predicted + static_cast<int>(coder.symbol(models.differences[i], difference)));
-  };
-  const int lastLow[3] = {last[0] & 0xFF, last[1] & 0xFF, last[2] & 0xFF};
-  const int lastHigh[3] = {last[0] >> 8, last[1] >> 8, last[2] >> 8};
-  int low[3] = {lastLow[0], lastLow[1], lastLow[2]}, high[3] = {lastHigh[0], lastHigh[1], lastHigh[2]};
-  if (used & 1) low[0] = code(0, lastLow[0]);
-  if (used & 2) high[0] = code(1, lastHigh[0]);
-  if (used & 64) {
-    int step = low[0] - lastLow[0];
-    if (used & 4) low[1] = code(2, clampToByte(step + lastLow[1]));
-    if (used & 16) low[2] = code(4, clampToByte((step + low[1] - lastLow[1]) / 2 + lastLow[2]));
-    step = high[0] - lastHigh[0];
-    if (used & 8) high[1] = code(3, clampToByte(step + lastHigh[1]));
-    if (used & 32) high[2] = code(5, clampToByte((step + high[1] - lastHigh[1]) / 2 + lastHigh[2]));
-  } else {
-    low[1] = low[2] = low[0];
-    high[1] = high[2] = high[0];
-  }
-  for (int i = 0; i < 3; ++i) last[i] = rgb[i] = static_cast<std::uint16_t>(low[i] | high[i] << 8);
+  RgbCoding coding;
+  coding.start(last, rgb);
+  RgbCoding::eachStep([&](const auto& step) { step(coding, coder, models); });
+  coding.finish(last);
+  for (int i = 0; i < 3; ++i) rgb[i] = last[i];
 }
 
 class Rgb12 {
@@ -414,17 +520,28 @@ class Rgb12 {
     m_models.start();
   }
 
-  template <class Coder>
-  void code(Coder& coder, std::byte* at) {
-    std::uint16_t rgb[3] = {};
-    if constexpr (Coder::kEncodes) std::memcpy(rgb, at, kSize);
-    inRegisters(coder, [&](Coder& local) __attribute__((always_inline)) { codeRgb(local, m_models, m_last, rgb); });
-    if constexpr (!Coder::kEncodes)
-      for (int i = 0; i < 3; ++i) store(at + 2 * i, rgb[i]);
+  template <class Visit>
+  static void eachStep(const Visit& visit) {
+    visit([](Rgb12& c, auto&, std::byte* at) { c.startCoding(at); });
+    RgbCoding::eachStep([&](const auto& step) {
+      visit([&step](Rgb12& c, auto& coder, std::byte*) { step(c.m_coding, coder, c.m_models); });
+    });
+    visit([](Rgb12& c, auto&, std::byte* at) {
+      c.m_coding.finish(c.m_last);
+      // One by one as they were written just now: a load of more than that would have to wait for the cache.
+      for (int i = 0; i < 3; ++i) store(at + 2 * i, c.m_last[i]);
+    });
   }
 
  private:
+  void startCoding(const std::byte* at) {
+    std::uint16_t rgb[3];
+    std::memcpy(rgb, at, kSize);
+    m_coding.start(m_last, rgb);
+  }
+
   std::uint16_t m_last[3];
+  RgbCoding m_coding;
   RgbModels m_models;
 };
 

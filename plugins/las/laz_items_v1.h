@@ -30,17 +30,15 @@ class Point10V1 {
     renew(m_z);
   }
 
-  void codeX(Decoder& coder, const std::byte*) { codeDifference(coder, m_dx, 0, 0); }
-  void codeY(Decoder& coder, const std::byte*) { codeDifference(coder, m_dy, 1, std::min(m_dx.k, 19u)); }
-  void codeZ(Decoder& coder, std::byte* at) {
+  void code(Decoder& coder, std::byte* at) {
+    codeDifference(coder, m_dx, 0, 0);
+    codeDifference(coder, m_dy, 1, std::min(m_dx.k, 19u));
     m_next = (m_next + 1) % 3;
     const unsigned k = (m_dx.k + m_dy.k) / 2;
     store(m_last + 8, codeInteger(coder, m_z, load<std::int32_t>(m_last + 8), std::min(k, 19u)));
     codeRest(coder, k);
     std::memcpy(at, m_last, kSize);
   }
-  /// Here the attributes come last, with codeZ.
-  void codeAttributes(Decoder&, const std::byte*) {}
 
  private:
   static std::int32_t median(const std::array<std::int32_t, 3>& v) {

@@ -17,6 +17,7 @@ inline namespace ALIDADE_LAZ_SET {
 template <class Coder>
 struct Layer {
   Coder coder;
+  StreamEnd end;
   bool present = false;
 };
 

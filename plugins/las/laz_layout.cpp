@@ -108,7 +108,8 @@ Result<std::optional<std::vector<LasRun>>> readChunkTable(const ByteSource& file
 
   const bool variable = layout.chunkSize == LazLayout::kVariable;
   auto sizes = std::make_unique<Sizes>();
-  laz::Decoder coder{std::span<const std::byte>(bytes).first(size)};
+  laz::Decoder coder(bytes.data());
+  const laz::StreamEnd end(std::span<const std::byte>(bytes).first(size));
   std::vector<LasRun> chunks;
   std::uint64_t at = first, points = 0;
   std::int32_t lastCount = 0, lastBytes = 0;
@@ -117,7 +118,7 @@ Result<std::optional<std::vector<LasRun>>> readChunkTable(const ByteSource& file
     lastBytes = codeInteger(coder, *sizes, lastBytes, 1);
     LasRun chunk{at, static_cast<std::uint32_t>(lastBytes),
                  variable ? static_cast<std::uint32_t>(lastCount) : layout.chunkSize};
-    if (coder.overran() || chunk.bytes > first + room - at)
+    if (end.isBefore(coder) || chunk.bytes > first + room - at)
       return fail(fmt::format("Chunk {} of {} reaches past the end of the points", i + 1, count), where, kExportAgain);
     chunk.count = std::min(chunk.count, header.pointCount - points);
     at += chunk.bytes;

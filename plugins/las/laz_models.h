@@ -7,6 +7,7 @@
 #include <array>
 #include <bit>
 #include <cstdint>
+#include <cstring>
 #include <memory>
 
 #if defined(__SSE2__)
@@ -22,35 +23,61 @@ namespace alidade::laz {
 inline namespace ALIDADE_LAZ_SET {
 
 /// How many of 16 rising numbers are at most `limit`, which is below 2^16 - 1.
-[[gnu::always_inline]] inline unsigned countUpTo(const std::uint16_t* sixteen, std::uint32_t limit) {
+[[gnu::always_inline]] inline std::size_t countUpTo16(const std::uint16_t* numbers, std::uint32_t limit) {
 #if defined(ALIDADE_LAZ_AVX512)
   const __m256i wanted = _mm256_set1_epi16(static_cast<short>(limit));
-  const __m256i numbers = _mm256_load_si256(reinterpret_cast<const __m256i*>(sixteen));
-  return static_cast<unsigned>(__builtin_popcount(_mm256_cmple_epu16_mask(numbers, wanted)));
+  const __m256i sixteen = _mm256_load_si256(reinterpret_cast<const __m256i*>(numbers));
+  return static_cast<std::size_t>(__builtin_popcount(_mm256_cmple_epu16_mask(sixteen, wanted)));
 #elif defined(ALIDADE_LAZ_AVX2)
   const __m256i wanted = _mm256_set1_epi16(static_cast<short>(limit));
-  const __m256i numbers = _mm256_load_si256(reinterpret_cast<const __m256i*>(sixteen));
-  const __m256i atMost = _mm256_cmpeq_epi16(_mm256_max_epu16(numbers, wanted), wanted);
-  return static_cast<unsigned>(__builtin_popcount(static_cast<unsigned>(_mm256_movemask_epi8(atMost)))) / 2;
+  const __m256i sixteen = _mm256_load_si256(reinterpret_cast<const __m256i*>(numbers));
+  const __m256i atMost = _mm256_cmpeq_epi16(_mm256_max_epu16(sixteen, wanted), wanted);
+  return static_cast<std::size_t>(__builtin_popcount(static_cast<unsigned>(_mm256_movemask_epi8(atMost)))) / 2;
 #elif defined(__SSE2__)
   // Saturated to 0 means at most `limit`.
   const __m128i wanted = _mm_set1_epi16(static_cast<short>(limit)), zero = _mm_setzero_si128();
   const auto atMost = [&](const std::uint16_t* eight) {
     return _mm_cmpeq_epi16(_mm_subs_epu16(_mm_load_si128(reinterpret_cast<const __m128i*>(eight)), wanted), zero);
   };
-  const int mask = _mm_movemask_epi8(_mm_packs_epi16(atMost(sixteen), atMost(sixteen + 8)));
-  return static_cast<unsigned>(__builtin_ctz(~static_cast<unsigned>(mask)));
+  const int mask = _mm_movemask_epi8(_mm_packs_epi16(atMost(numbers), atMost(numbers + 8)));
+  return static_cast<std::size_t>(__builtin_ctz(~static_cast<unsigned>(mask)));
 #else
-  unsigned count = 0;
-  for (int i = 0; i < 16; ++i) count += sixteen[i] <= limit;
+  std::size_t count = 0;
+  for (int i = 0; i < 16; ++i) count += numbers[i] <= limit;
   return count;
 #endif
 }
 
+/// The same of Count numbers, a multiple of 16.
+template <int Count>
+[[gnu::always_inline]] inline std::size_t countUpTo(const std::uint16_t* numbers, std::uint32_t limit) {
+  std::size_t count = 0;
+  int i = 0;
+#if defined(ALIDADE_LAZ_AVX512)
+  for (; i + 32 <= Count; i += 32) {
+    const __m512i wanted = _mm512_set1_epi16(static_cast<short>(limit));
+    const __m512i some = _mm512_load_si512(numbers + i);
+    count += static_cast<std::size_t>(__builtin_popcount(_mm512_cmple_epu16_mask(some, wanted)));
+  }
+#endif
+  for (; i < Count; i += 16) count += countUpTo16(numbers + i, limit);
+  return count;
+}
+
+/// Up to how many numbers are sooner compared all than sought in two steps.
+#if defined(ALIDADE_LAZ_AVX512)
+constexpr int kComparedAll = 128;
+#else
+constexpr int kComparedAll = 48;
+#endif
+
+/// Stands behind the last cumulated frequency: above every place that a decoder may look for (see find).
+constexpr std::uint32_t kBeyond = (1 << 15) + (1 << 6);
+
 /// An adaptive model of `symbols` symbols, at most Capacity: cumulated frequencies in 2^-15, renewed from
 /// counts at growing distances (A. Said, "Introduction to Arithmetic Coding", HPL-2004-76, and the
-/// LASzip specification). Symbols are found in groups of 16 by comparing whole vectors: no loop that a
-/// processor would have to guess the length of.
+/// LASzip specification). Symbols are found by comparing whole vectors: no loop that a processor would have to guess the
+/// length of. In large models the group of 16 is found first.
 template <int Capacity>
 class SymbolModel {
  public:
@@ -58,7 +85,7 @@ class SymbolModel {
   static constexpr std::uint32_t kMaxTotal = 1 << 15;
 
   explicit SymbolModel(int symbols = Capacity) : m_symbols(static_cast<std::uint16_t>(symbols)) {
-    m_low.fill(0xFFFF);
+    m_low.fill(kBeyond);
     m_first.fill(0xFFFF);
     m_counts.fill(0);
     for (int i = 0; i < symbols; ++i) m_counts[i] = 1;
@@ -67,18 +94,29 @@ class SymbolModel {
     m_cycle = m_untilRenewal = (static_cast<std::uint32_t>(symbols) + 6) >> 1;
   }
 
-  /// Cumulated frequency below the symbol; of last() + 1 nothing useful.
+  /// A symbol and the cumulated frequencies below it and below the next, which is kBeyond for the last.
+  struct Found {
+    unsigned symbol;
+    std::uint32_t low, next;
+  };
+
+  /// Cumulated frequency below the symbol.
   std::uint32_t low(unsigned symbol) const { return m_low.data()[symbol]; }
   unsigned last() const { return m_symbols - 1u; }
 
-  /// The symbol whose share of [0, 2^15) holds `place`; the last where it lies a little beyond.
-  [[gnu::always_inline]] unsigned find(std::uint32_t place) const {
-    unsigned group = 0;
-    if constexpr (kGroups > 1) {
-      for (int block = 0; block < kFirst; block += 16) group += countUpTo(m_first.data() + block, place);
-      --group;
+  /// The symbol whose share of [0, 2^15) holds `place`; the last where it lies beyond, by less than 2^6: a value below
+  /// the length, in steps of length / 2^15, which are at least 2^9, of whose 2^15 the length's rest is below 2^6.
+  [[gnu::always_inline]] Found find(std::uint32_t place) const {
+    // The frequencies are read beside the group's beginning: the symbol itself is wanted later than they are.
+    const std::uint16_t* group = m_low.data();
+    std::size_t count;
+    if constexpr (kGrouped) {
+      group += 16 * (countUpTo<kFirst>(m_first.data(), place) - 1);
+      count = countUpTo16(group, place);
+    } else {
+      count = countUpTo<16 * kGroups>(group, place);
     }
-    return 16 * group + countUpTo(m_low.data() + 16 * group, place) - 1;
+    return {static_cast<unsigned>(group - m_low.data() + count) - 1, group[count - 1], group[count]};
   }
 
   void learn(unsigned symbol) {
@@ -87,7 +125,8 @@ class SymbolModel {
   }
 
  private:
-  static constexpr int kFirst = (kGroups + 15) / 16 * 16;
+  static constexpr bool kGrouped = Capacity > kComparedAll;
+  static constexpr int kFirst = kGrouped ? (kGroups + 15) / 16 * 16 : 0;
 
   [[gnu::noinline]] void renew() {
     m_total += m_cycle;
@@ -101,14 +140,14 @@ class SymbolModel {
       m_low[i] = static_cast<std::uint16_t>((scale * sum) >> 16);
       sum += m_counts[i];
     }
-    if constexpr (kGroups > 1)
+    if constexpr (kGrouped)
       for (int group = 0; 16 * group < m_symbols; ++group) m_first[group] = m_low[16 * group];
     m_cycle = std::min((5 * m_cycle) >> 2, (m_symbols + 6u) << 3);
     m_untilRenewal = m_cycle;
   }
 
-  alignas(32) std::array<std::uint16_t, 16 * kGroups + 16> m_low;  ///< all bits set behind the last symbol's
-  alignas(32) std::array<std::uint16_t, kFirst> m_first;  ///< every 16th of m_low
+  alignas(64) std::array<std::uint16_t, 16 * kGroups + 16> m_low;
+  alignas(kGrouped ? 64 : 1) std::array<std::uint16_t, kFirst> m_first;  ///< every 16th of m_low; only where grouped
   std::array<std::uint16_t, 16 * kGroups> m_counts;
   std::uint32_t m_total = 0, m_cycle = 0, m_untilRenewal = 0;
   std::uint16_t m_symbols;
@@ -161,6 +200,10 @@ class IntegerModel {
 
   unsigned k = 0;  ///< of the number coded last: the context of others
 
+  // Of the number that is being coded.
+  std::int32_t predicted = 0;
+  std::uint32_t code = 0;
+
  private:
   std::array<SymbolModel<Bits + 1>, Contexts> m_width;
   std::array<SymbolModel<16>, 4> m_small;
@@ -180,16 +223,18 @@ template <int Symbols, int Count>
 class LazyModels {
  public:
   SymbolModel<Symbols>& operator[](unsigned i) {
-    if (!m_used[i]) {
-      if (!m_models[i]) m_models[i] = std::make_unique<SymbolModel<Symbols>>();
-      renew(*m_models[i]);
-      m_used[i] = true;
-    }
+    if (!m_used[i]) make(i);
     return *m_models[i];
   }
   void reset() { m_used.fill(false); }
 
  private:
+  [[gnu::noinline]] void make(unsigned i) {
+    if (!m_models[i]) m_models[i] = std::make_unique<SymbolModel<Symbols>>();
+    renew(*m_models[i]);
+    m_used[i] = true;
+  }
+
   std::array<std::unique_ptr<SymbolModel<Symbols>>, Count> m_models;
   std::array<bool, Count> m_used{};
 };
@@ -201,11 +246,17 @@ class StreamingMedian {
   std::int32_t get() const { return m_sorted[2]; }
 
   void add(std::int32_t v) {
-    const std::int32_t* keep = m_sorted.data() + (m_dropLargest ? 0 : 1);
-    const std::int32_t a = keep[0], b = keep[1], c = keep[2], d = keep[3], middle = m_sorted[2];
+    using Four [[gnu::vector_size(16)]] = std::int32_t;
+    const std::int32_t middle = m_sorted[2];
+    Four kept;
+    std::memcpy(&kept, m_sorted.data() + (m_dropLargest ? 0 : 1), sizeof kept);
     m_dropLargest = (v < middle) | (!m_dropLargest & (v == middle));
-    m_sorted = {std::min(a, v), std::max(a, std::min(b, v)), std::max(b, std::min(c, v)), std::max(c, std::min(d, v)),
-                std::max(d, v)};
+    // The number goes in where it stands between its neighbours.
+    const Four below = __builtin_shuffle(kept, Four{INT32_MIN}, Four{4, 0, 1, 2});
+    const Four capped = kept < v ? kept : v - Four{};
+    const Four sorted = below > capped ? below : capped;
+    std::memcpy(m_sorted.data(), &sorted, sizeof sorted);
+    m_sorted[4] = std::max(kept[3], v);
   }
 
  private:
