@@ -100,15 +100,19 @@ std::string whyNotDecodable(const std::vector<Item>& items, int pointFormat, std
   return {};
 }
 
-std::unique_ptr<ChunkDecoder> ChunkDecoder::make(const std::vector<Item>& items) {
+std::vector<MakeDecoder> usableDecoders() {
+  std::vector<MakeDecoder> decoders{makeDecoder};
 #if defined(ALIDADE_LAZ_SETS)
-  static const bool avx512 = __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl") &&
-                             __builtin_cpu_supports("bmi2");
-  static const bool avx2 = __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2");
-  if (avx512) return makeAvx512Decoder(items);
-  if (avx2) return makeAvx2Decoder(items);
+  if (__builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2")) decoders.push_back(makeAvx2Decoder);
+  if (__builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl") && __builtin_cpu_supports("bmi2"))
+    decoders.push_back(makeAvx512Decoder);
 #endif
-  return makeDecoder(items);
+  return decoders;
+}
+
+std::unique_ptr<ChunkDecoder> ChunkDecoder::make(const std::vector<Item>& items) {
+  static const MakeDecoder fastest = usableDecoders().back();
+  return fastest(items);
 }
 
 std::vector<std::byte> encodeChunk(const std::vector<Item>& items, const std::byte* records, std::size_t count) {
