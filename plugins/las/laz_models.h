@@ -252,7 +252,7 @@ class StreamingMedian {
     std::memcpy(&kept, m_sorted.data() + (m_dropLargest ? 0 : 1), sizeof kept);
     m_dropLargest = (v < middle) | (!m_dropLargest & (v == middle));
     // The number goes in where it stands between its neighbours.
-    const Four below = __builtin_shuffle(kept, Four{INT32_MIN}, Four{4, 0, 1, 2});
+    const Four below = __builtin_shufflevector(kept, Four{INT32_MIN}, 4, 0, 1, 2);
     const Four capped = kept < v ? kept : v - Four{};
     const Four sorted = below > capped ? below : capped;
     std::memcpy(m_sorted.data(), &sorted, sizeof sorted);
