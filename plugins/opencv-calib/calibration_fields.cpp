@@ -17,49 +17,9 @@ namespace {
 const std::string kAdvice = "Save the calibration again with OpenCV's FileStorage";
 constexpr int kMaxDepth = 32;
 
-bool isKeyText(std::string_view text) {
-  return !text.empty() && std::all_of(text.begin(), text.end(), [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' || c == '-';
-  }) && !(text[0] >= '0' && text[0] <= '9') && text[0] != '-';
-}
-
-/// Without remark, type tag ("!!opencv-matrix") and quotes.
-std::string_view yamlValue(std::string_view text) {
-  text = trimmed(text);
-  if (text.starts_with("!!")) text = trimmed(text.substr(std::min(text.find(' '), text.size())));
-  if (text.size() >= 2 && (text.front() == '"' || text.front() == '\'') && text.back() == text.front())
-    text = text.substr(1, text.size() - 2);
-  return text;
-}
-
-CalibrationFields yamlFields(std::string_view text) {
-  CalibrationFields fields;
-  std::string top;
-  std::string* value = nullptr;
-  LineReader lines(text);
-  for (std::string_view line; lines.next(line);) {
-    if (line.starts_with('%') || line.starts_with("---") || line.starts_with("...")) continue;
-    if (const std::size_t remark = line.find('#'); remark != std::string_view::npos) line = line.substr(0, remark);
-    const std::string_view words = trimmed(line);
-    if (words.empty()) continue;
-    const std::size_t colon = words.find(':');
-    if (colon != std::string_view::npos && isKeyText(words.substr(0, colon))) {
-      std::string key(words.substr(0, colon));
-      const bool isTop = line.front() != ' ' && line.front() != '\t';
-      if (isTop) top = key;
-      else key = top + "." + key;
-      value = &fields[key];
-      *value = std::string(yamlValue(words.substr(colon + 1)));
-    } else if (value) {  // a list goes on
-      value->append(" ").append(words);
-    }
-  }
-  return fields;
-}
-
-Result<CalibrationFields> xmlFields(std::string_view text, const std::string& path) {
+Result<TextFields> xmlFields(std::string_view text, const std::string& path) {
   const auto broken = [&](const char* what) { return fail(std::string("The XML is damaged: ") + what, path, kAdvice); };
-  CalibrationFields fields;
+  TextFields fields;
   std::vector<std::string> open;
   std::size_t at = 0;
   while (at < text.size()) {
@@ -90,7 +50,7 @@ Result<CalibrationFields> xmlFields(std::string_view text, const std::string& pa
   return fields;
 }
 
-Result<CalibrationFields> jsonFields(const std::string& text, const std::string& path) {
+Result<TextFields> jsonFields(const std::string& text, const std::string& path) {
   int depth = 0;
   for (const char c : text) {
     if (c == '[' || c == '{') ++depth;
@@ -102,7 +62,7 @@ Result<CalibrationFields> jsonFields(const std::string& text, const std::string&
   const auto words = [](const nlohmann::json& value) {
     return value.is_string() ? value.get<std::string>() : value.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
   };
-  CalibrationFields fields;
+  TextFields fields;
   for (const auto& [key, value] : json.items()) {
     if (!value.is_object()) {
       fields[key] = words(value);
@@ -115,7 +75,7 @@ Result<CalibrationFields> jsonFields(const std::string& text, const std::string&
 
 }  // namespace
 
-Result<CalibrationFields> parseCalibrationFields(const std::string& text, const std::string& path) {
+Result<TextFields> parseCalibrationFields(const std::string& text, const std::string& path) {
   const std::string_view start = trimmed(text);
   if (start.starts_with('<')) return xmlFields(text, path);
   if (start.starts_with('{')) return jsonFields(text, path);

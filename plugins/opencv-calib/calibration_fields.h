@@ -3,11 +3,10 @@
 
 #pragma once
 
-#include <map>
 #include <string>
-#include <string_view>
 
 #include "base/error.h"
+#include "plugin_api/yaml_fields.h"
 
 namespace alidade {
 
@@ -16,8 +15,6 @@ namespace alidade {
 ///
 /// Reads as much of YAML, XML and JSON as OpenCV's FileStorage writes, without FileStorage itself:
 /// that one crashes on damaged files (OpenCV 4.6). Nothing here calls itself.
-using CalibrationFields = std::map<std::string, std::string>;
-
-Result<CalibrationFields> parseCalibrationFields(const std::string& text, const std::string& path);
+Result<TextFields> parseCalibrationFields(const std::string& text, const std::string& path);
 
 }  // namespace alidade

@@ -23,13 +23,13 @@ const std::string kAdvice = "Save the calibration with OpenCV's FileStorage, wit
                             "camera_matrix and distortion_coefficients";
 
 /// The first of the spellings that the file has; empty where it has none.
-std::string keyOf(const CalibrationFields& fields, std::initializer_list<const char*> spellings) {
+std::string keyOf(const TextFields& fields, std::initializer_list<const char*> spellings) {
   for (const char* key : spellings)
     if (fields.contains(key) || fields.contains(std::string(key).append(".data"))) return key;
   return {};
 }
 
-std::string textOf(const CalibrationFields& fields, const std::string& key) {
+std::string textOf(const TextFields& fields, const std::string& key) {
   const auto found = fields.find(key);
   return found == fields.end() ? std::string() : found->second;
 }
@@ -62,7 +62,7 @@ Result<std::vector<double>> numbersOf(std::string text, const std::string& key, 
 }
 
 /// An opencv-matrix (rows, cols, data), or a plain list, which is a row.
-Result<Matrix> matrixOf(const CalibrationFields& fields, const std::string& spelling, const std::string& key, const std::string& path) {
+Result<Matrix> matrixOf(const TextFields& fields, const std::string& spelling, const std::string& key, const std::string& path) {
   Matrix matrix;
   matrix.hasShape = fields.contains(spelling + ".data");
   auto values = numbersOf(textOf(fields, matrix.hasShape ? spelling + ".data" : spelling), key, path);
@@ -82,7 +82,7 @@ Result<Matrix> matrixOf(const CalibrationFields& fields, const std::string& spel
   return matrix;
 }
 
-Result<std::array<int, 2>> sizeOf(const CalibrationFields& fields, const std::string& path) {
+Result<std::array<int, 2>> sizeOf(const TextFields& fields, const std::string& path) {
   std::array<double, 2> size{};
   const std::string width = keyOf(fields, {"image_width", "image_Width", "imageWidth", "width"});
   const std::string height = keyOf(fields, {"image_height", "image_Height", "imageHeight", "height"});
@@ -105,7 +105,7 @@ Result<std::array<int, 2>> sizeOf(const CalibrationFields& fields, const std::st
   return std::array<int, 2>{static_cast<int>(size[0]), static_cast<int>(size[1])};
 }
 
-Result<bool> isFisheye(const CalibrationFields& fields, const std::string& path) {
+Result<bool> isFisheye(const TextFields& fields, const std::string& path) {
   if (const std::string name = textOf(fields, "distortion_model"); !name.empty()) {
     if (name == "equidistant" || name == "fisheye") return true;
     if (name == "plumb_bob" || name == "rational_polynomial") return false;
@@ -136,7 +136,7 @@ Result<CameraModel> modelOf(std::size_t coefficients, bool fisheye, const std::s
   }
 }
 
-Result<CameraSet> cameraOf(const CalibrationFields& fields, const std::string& path) {
+Result<CameraSet> cameraOf(const TextFields& fields, const std::string& path) {
   CameraSet set;
   const auto size = sizeOf(fields, path);
   if (!size) return fail(size.error());

@@ -4,12 +4,12 @@
 #include "plugin_api/euroc_sensor.h"
 
 #include <cmath>
-#include <map>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "plugin_api/text_file.h"
+#include "plugin_api/yaml_fields.h"
 
 namespace alidade {
 
@@ -21,39 +21,13 @@ constexpr double kNearlyRotation = 1e-3;
 
 const std::string kAdvice = "Choose the sensor.yaml of a camera's folder, as the EuRoC data sets have it";
 
-using Fields = std::map<std::string, std::string, std::less<>>;
-
-/// "key: value" by key, those that stand indented below T_BS as "T_BS.key"; a list may go on over several lines.
-Fields fieldsOf(std::string_view text) {
-  Fields fields;
-  std::string top;
-  std::string* value = nullptr;
-  LineReader lines(text);
-  for (std::string_view line; lines.next(line);) {
-    line = line.substr(0, line.find('#'));
-    const std::string_view words = trimmed(line);
-    if (words.empty()) continue;
-    const std::size_t colon = words.find(':');
-    if (colon == std::string_view::npos) {
-      if (value) value->append(" ").append(words);
-      continue;
-    }
-    const bool isTop = line.front() != ' ' && line.front() != '\t';
-    const std::string key(trimmed(words.substr(0, colon)));
-    if (isTop) top = key;
-    value = &fields[isTop ? key : top + "." + key];
-    *value = std::string(trimmed(words.substr(colon + 1)));
-  }
-  return fields;
-}
-
-std::string wordOf(const Fields& fields, std::string_view key) {
+std::string wordOf(const TextFields& fields, std::string_view key) {
   const auto found = fields.find(key);
   return found == fields.end() ? std::string() : lowerCase(found->second);
 }
 
 /// As many numbers as wanted, in brackets.
-Result<std::vector<double>> numbersOf(const Fields& fields, const std::string& key, std::size_t count, const std::string& path) {
+Result<std::vector<double>> numbersOf(const TextFields& fields, const std::string& key, std::size_t count, const std::string& path) {
   const auto found = fields.find(key);
   if (found == fields.end()) return fail("'" + key + "' is missing", path, kAdvice);
   std::string text = found->second;
@@ -66,7 +40,7 @@ Result<std::vector<double>> numbersOf(const Fields& fields, const std::string& k
   return *values;
 }
 
-Result<CameraModel> modelOf(const Fields& fields, const std::string& path) {
+Result<CameraModel> modelOf(const TextFields& fields, const std::string& path) {
   if (const std::string type = wordOf(fields, "sensor_type"); !type.empty() && type != "camera")
     return fail("The sensor is no camera but " + quotedWords(type), path, kAdvice);
   if (const std::string camera = wordOf(fields, "camera_model"); camera != "pinhole")
@@ -95,7 +69,7 @@ Result<RigidTransform> transformOf(const std::vector<double>& m, const std::stri
 Result<EurocSensor> parseEurocSensor(std::string_view text, const std::string& path) {
   if (trimmed(text).empty()) return fail("The sensor file is empty", path, kAdvice);
   if (text.find('\0') != std::string_view::npos) return fail("The sensor file is no text file", path, kAdvice);
-  const Fields fields = fieldsOf(text);
+  const TextFields fields = yamlFields(text);
   const auto model = modelOf(fields, path);
   if (!model) return fail(model.error());
   const auto size = numbersOf(fields, "resolution", 2, path);
