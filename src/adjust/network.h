@@ -216,7 +216,8 @@ struct NetworkSummary {
   double initialCost = 0, finalCost = 0;  ///< half the (robust) sum of squares, Ceres' convention; what took part at the end
   double sigma0 = 0;
   /// All standard deviations, ellipses and expected errors are multiplied by it: sigma0 where the residuals are far
-  /// above the given sigmas, else 1. Never below.
+  /// above the given sigmas, else 1. Never below. As sigma0 is estimated then, 95 % regions are wider still, by Fisher's
+  /// distribution instead of the normal one.
   double sigmaScale = 1;
   int redundancy = 0;
   std::vector<AdjustedPose> poses; ///< the start where not converged

@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "adjust/network_checks.h"
+#include "adjust/robust.h"
 
 namespace alidade {
 
@@ -32,7 +33,7 @@ std::vector<int> blocksOf(const Term& term) {
 
 /// From everything adjusted that the frame hangs on: the pixel's ellipse, and what it is across the ray at the point.
 ExpectedError expectedAt(const NetworkTerms& terms, const NetworkState& state, const NormalSystem& normals,
-                         const NetworkOptions::At& at) {
+                         const NetworkOptions::At& at, double wider) {
   ExpectedError expected;
   expected.world = at.world;
   expected.ellipseSemiMajorPx = expected.ellipseSemiMinorPx = expected.ellipseAngleRad = expected.millimetres = noNumber;
@@ -55,7 +56,7 @@ ExpectedError expectedAt(const NetworkTerms& terms, const NetworkState& state, c
       for (int c = 0; c < n; ++c, ++column)
         for (int r = 0; r < 2; ++r) jacobian(r, column) = value.byBlock[b][r * n + c];
     }
-    pixel = jacobian * covariance * jacobian.transpose();
+    pixel = wider * wider * jacobian * covariance * jacobian.transpose();
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(pixel);
   expected.ellipseSemiMinorPx = std::sqrt(chiSquared95 * std::max(0.0, axes.eigenvalues()[0]));
@@ -74,7 +75,7 @@ ExpectedError expectedAt(const NetworkTerms& terms, const NetworkState& state, c
   return expected;
 }
 
-void describePoses(const NetworkTerms& terms, const NormalSystem& normals, NetworkSummary& summary) {
+void describePoses(const NetworkTerms& terms, const NormalSystem& normals, double wider, NetworkSummary& summary) {
   for (std::size_t i = 0; i < summary.poses.size(); ++i) {
     const int block = terms.layout().poseBlock[i];
     if (block < 0) continue;
@@ -86,7 +87,10 @@ void describePoses(const NetworkTerms& terms, const NormalSystem& normals, Netwo
       pose.positionStdM[k] = std::sqrt(std::max(0.0, covariance(k, k)));
       pose.rotationStdRad[k] = std::sqrt(std::max(0.0, covariance(3 + k, 3 + k)));
     }
-    pose.ellipse = positionEllipse(pose.covariance);
+    Covariance6 region = pose.covariance;
+    for (auto& row : region)
+      for (double& entry : row) entry *= wider * wider;
+    pose.ellipse = positionEllipse(region);
   }
 }
 
@@ -294,7 +298,8 @@ NetworkSummary describe(const NetworkTerms& terms, const NetworkState& state, co
 
 void describeAccuracy(const NetworkTerms& terms, const NetworkState& state, const NormalSystem& normals,
                       const NetworkOptions& options, NetworkSummary& summary) {
-  describePoses(terms, normals, summary);
+  const double wider = summary.sigmaScale > 1 ? widening95(summary.redundancy) : 1;
+  describePoses(terms, normals, wider, summary);
   describeCameras(terms, state, normals, summary);
   describeMounts(terms, normals, summary);
   describeCorrelations(terms, normals, summary);
@@ -302,7 +307,7 @@ void describeAccuracy(const NetworkTerms& terms, const NetworkState& state, cons
   for (std::size_t i = 0; i < summary.clockStdSecs.size(); ++i)
     if (terms.layout().clockBlock[i] >= 0)
       summary.clockStdSecs[i] = std::sqrt(std::max(0.0, normals.covariance({terms.layout().clockBlock[i]})(0, 0)));
-  for (const NetworkOptions::At& at : options.at) summary.expected.push_back(expectedAt(terms, state, normals, at));
+  for (const NetworkOptions::At& at : options.at) summary.expected.push_back(expectedAt(terms, state, normals, at, wider));
 }
 
 }  // namespace alidade

@@ -7,6 +7,9 @@
 
 #include <glm/glm.hpp>
 
+#include "camera/camera.h"
+#include "geometry/rigid_transform.h"
+
 namespace alidade {
 
 /// Of a pose. Rows and columns: centre E, N, H (metres), then rotation about its own x, y, z (radians). Locked
@@ -20,6 +23,10 @@ struct ExpectedError {
   double ellipseAngleRad = 0;                             ///< of the major axis, from +u to +v
   double millimetres = 0;  ///< 95 %: major axis at the point's depth, perpendicular to the ray
 };
+
+/// From a pose and its covariance: the pixel's through the full lens, and the point's across the ray. NaN where the camera does
+/// not see the point.
+ExpectedError expectedError(const Camera& camera, const RigidTransform& cameraFromWorld, const Covariance6& covariance, const glm::dvec3& world);
 
 /// 95 % confidence of a centre: the horizontal ellipse and the height.
 struct PositionEllipse {

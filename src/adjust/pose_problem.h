@@ -52,7 +52,6 @@ class PoseProblem {
 
   /// Nothing for a point behind the camera.
   std::optional<Linearised> linearise(const PoseState& state, int observation) const;
-  std::optional<Linearised> lineariseAt(const PoseState& state, const glm::dvec3& world) const { return lineariseAt(state, world, nullptr); }
   /// Inverse covariance of each observation's pixel, the point's own standard deviation carried into the picture at
   /// this state; from the start state until called again.
   void weighAt(const PoseState& state);

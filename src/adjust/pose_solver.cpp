@@ -161,16 +161,16 @@ Consensus findConsensus(const PoseProblem& problem, const std::vector<int>& usab
   }
   found.state = best.state;
   found.inliers = within(problem, best.state, usable, limit);
-  // A half of right picks misses one or two beyond the limit by chance. Where sigmas are too small, as many may agree by
-  // chance; where three fifths do, it is none.
-  const int agree = static_cast<int>(found.inliers.size());
-  if (5 * agree >= 3 * n || !std::isfinite(leastScale)) return found;
+  if (!std::isfinite(leastScale)) return found;
 
   const double scale = std::clamp(leastScale, 1.0, largestScale);
   const PoseState wide = settled(problem, median.state, usable, limit * scale);
   std::vector<int> agreeing = within(problem, wide, usable, limit * scale);
   if (2 * static_cast<int>(agreeing.size()) < n) return found;
-  if (7 * agree >= 3 * n && surprise(problem, found.state, usable, limit, 1) <= surprise(problem, wide, usable, limit, scale)) return found;
+  // A half of right picks misses one or two beyond the limit by chance; but where sigmas are too small, few picks may
+  // agree with a pose by chance as well.
+  const bool manyAgree = 7 * static_cast<int>(found.inliers.size()) >= 3 * n;
+  if (manyAgree && surprise(problem, found.state, usable, limit, 1) <= surprise(problem, wide, usable, limit, scale)) return found;
   found.state = wide;
   found.inliers = std::move(agreeing);
   found.scale = scale;

@@ -33,8 +33,8 @@ struct Consensus {
 /// from the start, and where that leaves outliers, poses from small random subsets (fixed seed)
 /// scored by truncated squares (MSAC, Torr and Zisserman 2000); fifty observations or more of which nine tenths agree
 /// need no subsets. Where fewer than three sevenths agree within
-/// `outlierSigmas`, or fewer than three fifths and the larger scale is the likelier one, the scale is estimated by least
-/// median of squares (Rousseeuw 1984), at most 20.
+/// `outlierSigmas`, or a larger scale is likelier, the scale is that of the least median of squares (Rousseeuw 1984), at
+/// most 20.
 Consensus findConsensus(const PoseProblem& problem, const std::vector<int>& usable, const ResectionOptions& options);
 
 }  // namespace alidade

@@ -21,7 +21,6 @@ namespace alidade {
 namespace {
 
 constexpr double noNumber = std::numeric_limits<double>::quiet_NaN();
-constexpr double chiSquared95 = 5.991464547107979;  // two degrees of freedom
 
 /// Residual of an observation in units of its own standard deviation: an adjusted residual has the
 /// covariance s²I - J Q Jᵀ, that of an observation left out s²I + J Q Jᵀ (Baarda 1968). An observation
@@ -102,43 +101,6 @@ std::vector<ResectionResidual> residualsAt(const PoseProblem& problem, const Pos
   return all;
 }
 
-/// From the pose's covariance: the pixel's through the full lens, and the point's across the ray.
-ExpectedError expectedAt(const PoseProblem& problem, const PoseState& state, const Matrix6& covariance,
-                         const glm::dvec3& world) {
-  ExpectedError expected;
-  expected.world = world;
-  const auto at = problem.lineariseAt(state, world);
-  const glm::dvec3 p = problem.inCamera(state, world);
-  if (!at || !problem.camera().project(p)) {
-    expected.ellipseSemiMajorPx = expected.ellipseSemiMinorPx = noNumber;
-    expected.ellipseAngleRad = expected.millimetres = noNumber;
-    return expected;
-  }
-  const Eigen::Matrix2d pixel = at->jacobian * covariance * at->jacobian.transpose();
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> axes(pixel);
-  expected.ellipseSemiMinorPx = std::sqrt(chiSquared95 * std::max(0.0, axes.eigenvalues()[0]));
-  expected.ellipseSemiMajorPx = std::sqrt(chiSquared95 * std::max(0.0, axes.eigenvalues()[1]));
-  const Eigen::Vector2d major = axes.eigenvectors().col(1);
-  expected.ellipseAngleRad = std::atan2(major[1], major[0]);
-
-  const glm::dmat3 rotation = glm::mat3_cast(state.rotation);
-  Eigen::Matrix<double, 3, 6> moves;
-  for (int k = 0; k < 3; ++k) {
-    glm::dvec3 unit(0);
-    unit[k] = 1;
-    const glm::dvec3 byCentre = -(rotation * unit), byRotation = glm::cross(unit, p);
-    moves.col(k) << byCentre.x, byCentre.y, byCentre.z;
-    moves.col(3 + k) << byRotation.x, byRotation.y, byRotation.z;
-  }
-  const glm::dvec3 ray = glm::normalize(p);
-  const Eigen::Vector3d d(ray.x, ray.y, ray.z);
-  const Eigen::Matrix3d across = Eigen::Matrix3d::Identity() - d * d.transpose();
-  const Eigen::Matrix3d spread = across * moves * covariance * moves.transpose() * across;
-  const double largest = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(spread).eigenvalues()[2];
-  expected.millimetres = 1000 * std::sqrt(chiSquared95 * std::max(0.0, largest));
-  return expected;
-}
-
 void describeCorrelations(ResectionSummary& summary) {
   static constexpr const char* names[] = {"E", "N", "H", "the rotation about x", "the rotation about y", "the rotation about z"};
   constexpr double high = 0.95;
@@ -159,9 +121,13 @@ ResectionSummary refused(ResectionSummary summary, std::string reason) {
   return summary;
 }
 
+double redundancyOf(const PoseProblem& problem, const Adjusted& done) {
+  return 2 * static_cast<double>(done.inliers.size()) - problem.freeCount();
+}
+
 /// A posteriori standard deviation of unit weight; 0 where nothing is redundant.
 double sigma0Of(const PoseProblem& problem, const Adjusted& done) {
-  const double redundancy = 2 * static_cast<double>(done.inliers.size()) - problem.freeCount();
+  const double redundancy = redundancyOf(problem, done);
   return redundancy > 0 ? std::sqrt(problem.cost(done.solution.state, done.inliers) / redundancy) : 0;
 }
 
@@ -183,9 +149,13 @@ void describe(ResectionSummary& summary, const PoseProblem& problem, const PoseS
     summary.positionStdM[i] = std::sqrt(covariance(i, i));
     summary.rotationStdRad[i] = std::sqrt(covariance(3 + i, 3 + i));
   }
-  summary.ellipse = positionEllipse(summary.covariance);
+  Covariance6 region = summary.covariance;
+  const double wider = summary.sigmaScale > 1 ? widening95(redundancyOf(problem, done)) : 1;
+  for (auto& row : region)
+    for (double& value : row) value *= wider * wider;
+  summary.ellipse = positionEllipse(region);
   describeCorrelations(summary);
-  for (const glm::dvec3& at : options.at) summary.expected.push_back(expectedAt(problem, state, covariance, at));
+  for (const glm::dvec3& at : options.at) summary.expected.push_back(expectedError(problem.camera(), problem.pose(state), region, at));
 }
 
 }  // namespace

@@ -55,7 +55,8 @@ struct ResectionSummary {
   double rmsPx = 0;                  ///< of the inliers
   double sigma0 = 0;                 ///< a posteriori standard deviation of unit weight
   /// All standard deviations, the ellipse and expected errors are multiplied by it: sigma0 where the residuals are far
-  /// above the given sigmas, else 1. Never below.
+  /// above the given sigmas, else 1. Never below. As sigma0 is estimated then, 95 % regions are wider still, by Fisher's
+  /// distribution instead of the normal one.
   double sigmaScale = 1;
   Covariance6 covariance{};          ///< of the camera's pose
   PositionEllipse ellipse;           ///< 95 % confidence of the camera's centre

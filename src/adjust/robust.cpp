@@ -14,6 +14,11 @@ double chanceLimit(std::size_t n) {
   return std::sqrt(2 * std::log(1e5 * static_cast<double>(std::max<std::size_t>(n, 1))));
 }
 
+double widening95(double redundancy) {
+  const double r = std::max(1.0, redundancy);
+  return std::sqrt(0.5 * r * (std::pow(0.05, -2 / r) - 1) / -std::log(0.05));
+}
+
 std::string reasonOfConvergence(bool farAboveSigmas, double sigma0) {
   if (!farAboveSigmas) return "Converged";
   std::string reason = fmt::format("Converged, but the residuals are about {:.1f} times the given sigmas", sigma0);

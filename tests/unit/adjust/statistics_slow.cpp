@@ -140,7 +140,7 @@ TEST(SlowStatistics, EllipsesOfABundlesPosesHoldTheTruth) {
 
 /// Sigmas too small by five: the residuals say so, and the ellipses grow with them.
 TEST(SlowStatistics, EllipsesHoldTheTruthWhereTheSigmasWereTooSmall) {
-  int held = 0, scaled = 0, heldInBundles = 0, scaledBundles = 0, poses = 0;
+  int held = 0, heldOfFew = 0, scaled = 0, scaledOfFew = 0, few = 0, heldInBundles = 0, scaledBundles = 0, poses = 0;
   for (unsigned seed = 1; seed <= scenes; ++seed) {
     Site site = randomSite(seed, 40, 0.5);
     for (ResectionObservation& pick : site.picks) pick.sigmaPx = 0.1;
@@ -148,6 +148,14 @@ TEST(SlowStatistics, EllipsesHoldTheTruthWhereTheSigmasWereTooSmall) {
     ASSERT_TRUE(summary && summary->converged) << seed << ": " << summary->reason;
     scaled += summary->sigmaScale > 1;
     held += holds(summary->ellipse, poseError(summary->cameraFromWorld, site.truth));
+
+    Site small = randomSite(seed, 10, 0.5);
+    for (ResectionObservation& pick : small.picks) pick.sigmaPx = 0.1;
+    const auto ofFew = resect(small.camera, small.start, small.picks);
+    if (!ofFew->converged) continue;
+    ++few;
+    scaledOfFew += ofFew->sigmaScale > 1;
+    heldOfFew += holds(ofFew->ellipse, poseError(ofFew->cameraFromWorld, small.truth));
   }
   constexpr unsigned trials = 300;
   for (unsigned seed = 1; seed <= trials; ++seed) {
@@ -162,10 +170,14 @@ TEST(SlowStatistics, EllipsesHoldTheTruthWhereTheSigmasWereTooSmall) {
     for (std::size_t i = 0; i < site.poses.size(); ++i, ++poses)
       heldInBundles += holds(summary->poses[i].ellipse, poseError(summary->poses[i].bodyFromWorld, site.poses[i]));
   }
-  std::printf("sigmas five times too small: %d of %u scenes of 40 picks and %d of %u bundles scaled by sigma naught; ellipses hold %.2f %%, "
-              "of %d poses in bundles %.2f %%\n", scaled, scenes, scaledBundles, trials, 100.0 * held / scenes, poses, 100.0 * heldInBundles / poses);
+  std::printf("sigmas five times too small: %d of %u scenes of 40 picks, %d of %d of 10 and %d of %u bundles scaled by sigma naught; ellipses hold "
+              "%.2f %%, %.2f %%, of %d poses in bundles %.2f %%\n", scaled, scenes, scaledOfFew, few, scaledBundles, trials, 100.0 * held / scenes,
+              100.0 * heldOfFew / few, poses, 100.0 * heldInBundles / poses);
   EXPECT_GE(held, 0.93 * scenes);
   EXPECT_LE(held, 0.97 * scenes);
+  EXPECT_GE(few, 0.99 * scenes);
+  EXPECT_GE(heldOfFew, 0.93 * few);
+  EXPECT_LE(heldOfFew, 0.97 * few);
   EXPECT_GE(heldInBundles, 0.93 * poses);
   EXPECT_LE(heldInBundles, 0.97 * poses);
 }
