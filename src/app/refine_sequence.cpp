@@ -361,7 +361,10 @@ class Sequence {
     summary.clocks = std::move(*clocks);
     smooth(summary.seenAs, summary.network);
     m_progress.report(0.92, "Adjusting");
-    auto adjusted = adjustNetwork(summary.network, {}, m_progress.part(0.92, 1));
+    NetworkOptions options;
+    for (std::size_t f = 0; f < summary.network.frames.size(); ++f)
+      for (const glm::dvec3& point : m_options.at) options.at.push_back({static_cast<int>(f), point});
+    auto adjusted = adjustNetwork(summary.network, options, m_progress.part(0.92, 1));
     if (!adjusted) return fail(adjusted.error());
     summary.adjustment = std::move(*adjusted);
     summary.converged = summary.adjustment.converged, summary.reason = summary.adjustment.reason;
@@ -441,6 +444,13 @@ Result<SequenceSummary> refineSequence(Project& project, const AlignmentScene& s
     frame.quality = PoseQuality{pose.rmsPx, summary->adjustment.sigma0, pose.positionStdM, pose.rotationStdRad, pose.observations};
   }
   return summary;
+}
+
+std::vector<ExpectedError> SequenceSummary::expectedIn(std::size_t frame) const {
+  const auto& all = adjustment.expected;
+  const auto points = static_cast<std::ptrdiff_t>(all.size() / network.frames.size());
+  const auto first = all.begin() + seenAs[frame] * points;
+  return {first, first + points};
 }
 
 std::string SequenceSummary::report(const Project& project) const {

@@ -19,6 +19,7 @@ struct SequenceOptions {
   int tiesAPair = 40;          ///< natural points followed from keyframe to keyframe, held to the scene's surface
   double heldOutShare = 0.1;   ///< of the places: they take no part and check the result
   MotionTies ties;             ///< cameras on one rig, poses held to trajectories
+  std::vector<glm::dvec3> at;    ///< object points where each frame's expected error is wanted
   double metresPerSecond2 = 3, radiansPerSecond2 = 3;  ///< how smoothly a camera moves; see NetworkSmoothness
 
   Result<void> validate() const;
@@ -53,6 +54,8 @@ struct SequenceSummary {
 
   /// Of a refined frame; that of its body, where its camera sits on a rig.
   const AdjustedPose& poseOf(std::size_t frame) const { return adjustment.poses[network.frames[seenAs[frame]].pose]; }
+  /// Of a refined frame, one for each of SequenceOptions::at.
+  std::vector<ExpectedError> expectedIn(std::size_t frame) const;
   std::string report(const Project& project) const;
 };
 

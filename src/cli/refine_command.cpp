@@ -11,6 +11,7 @@
 #include "app/jobs.h"
 #include "app/refine_network.h"
 #include "cli/command.h"
+#include "cli/refine_json.h"
 #include "cli/refine_pictures.h"
 #include "io/project_store.h"
 
@@ -71,28 +72,6 @@ Result<glm::dvec3> parsePoint(const std::string& text) {
   if (std::sscanf(text.c_str(), "%lf,%lf,%lf%c", &p.x, &p.y, &p.z, &tail) != 3 || !std::isfinite(p.x + p.y + p.z))
     return fail("'" + text + "' is no point", "--at", "Give E,N,H in metres");
   return p;
-}
-
-Json vec(const glm::dvec3& v) {
-  return {v.x, v.y, v.z};
-}
-
-Json ellipseOf(const PositionEllipse& ellipse) {
-  return {{"semi_major_m", ellipse.semiMajorM}, {"semi_minor_m", ellipse.semiMinorM}, {"azimuth_rad", ellipse.azimuthRad},
-          {"height_m", ellipse.heightM}};
-}
-
-/// NaN and infinity are no JSON numbers.
-Json finite(double value) {
-  return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
-Json expectedOf(const std::vector<ExpectedError>& all) {
-  if (all.empty()) return nullptr;
-  if (all.size() == 1) return finite(all[0].millimetres);
-  Json list = Json::array();
-  for (const ExpectedError& error : all) list.push_back(finite(error.millimetres));
-  return list;
 }
 
 /// The parameters by name, and those that were free with their standard deviations and correlations.
@@ -246,11 +225,11 @@ Result<Answer> runNetwork(Project& project, const Arguments& arguments, const st
   return answerOf(jsonOf(project, *refinement, *summary, arguments.dryRun), summary->report(refinement->network), summary->converged);
 }
 
-Result<Answer> runPictures(const Arguments& arguments, const ResectionOptions& locks, const MotionTies& ties, const Progress& progress) {
+Result<Answer> runPictures(const Arguments& arguments, const ResectionOptions& resection, const MotionTies& ties, const Progress& progress) {
   RefinePictures wanted{arguments.project, arguments.frame, {}, arguments.keyframes, arguments.dryRun};
-  wanted.options.lockPosition = locks.lockPosition, wanted.options.lockAttitude = locks.lockAttitude;
+  wanted.options.lockPosition = resection.lockPosition, wanted.options.lockAttitude = resection.lockAttitude;
   wanted.options.acceptedPx = arguments.withinPx;
-  wanted.to = arguments.to, wanted.ties = ties;
+  wanted.to = arguments.to, wanted.ties = ties, wanted.at = resection.at;
   return arguments.sequence ? refineTogether(wanted, progress) : refineAutomatically(wanted, progress);
 }
 
@@ -262,17 +241,17 @@ Result<Answer> run(const Arguments& arguments, const Progress& progress) {
   freedom.ties.rig |= arguments.rig, freedom.ties.trajectory |= arguments.trajectory;
   options.lockPosition = freedom.lockPosition, options.lockAttitude = freedom.lockAttitude[0];
   const auto& turns = freedom.lockAttitude;
+  for (const std::string& text : arguments.at) {
+    auto point = parsePoint(text);
+    if (!point) return fail(point.error());
+    options.at.push_back(*point);
+  }
   if (arguments.automatic || arguments.sequence) {
     if (turns[0] != turns[1] || turns[1] != turns[2])
       return fail("One rotation alone cannot be locked here", "--lock", "Lock attitude as a whole, or refine from observations");
     if (freedom.focal || freedom.principalPoint || freedom.distortion)
       return fail("A calibration is not adjusted from alignments", "--free", "Free rig or clock here, or refine from observations");
     return runPictures(arguments, options, freedom.ties, progress);
-  }
-  for (const std::string& text : arguments.at) {
-    auto point = parsePoint(text);
-    if (!point) return fail(point.error());
-    options.at.push_back(*point);
   }
   auto project = loadProject(arguments.project);
   if (!project) return fail(project.error());
@@ -302,16 +281,15 @@ void addRefine(Verbs& verbs) {
       ->check(checkedBy([](const std::string& list) { NetworkFreedom ignored; return applyFree(list, ignored); }, "LIST"));
   auto* rig = command->add_flag("--rig", arguments->rig, "Cameras with pictures of the same moments sit on one body, as the poses say; --free rig adjusts where");
   auto* trajectory = command->add_flag("--trajectory", arguments->trajectory, "Hold the poses to their trajectories; --free clock adjusts the clock offset, too");
-  auto* at = command->add_option("--at", arguments->at, "E,N,H where the expected error is wanted")
+  command->add_option("--at", arguments->at, "E,N,H where the expected error is wanted")
       ->check(checkedBy(parsePoint, "POINT"));
   auto* automatic = command->add_flag("--auto", arguments->automatic,
                     "Align --frame, or every frame with a pose, with the scans or the designs: from up to 3 degrees and 0.3 m off")
       ->excludes(command->get_option("--observations"))
-      ->excludes(at)->excludes(free)->excludes(rig)->excludes(trajectory);
+      ->excludes(free)->excludes(rig)->excludes(trajectory);
   auto* sequence = command->add_flag("--sequence", arguments->sequence,
                     "Align all frames with the scans and adjust them together: tie points, smooth motion, alarm where a fixed camera moved")
-      ->excludes("--auto", "--observations", "--frame")
-      ->excludes(at);
+      ->excludes("--auto", "--observations", "--frame");
   command->add_option("--keyframes", arguments->keyframes, "With --sequence: align every so many frames; those between follow")
       ->check(CLI::Range(1, 10000))
       ->needs(sequence);

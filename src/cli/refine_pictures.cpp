@@ -9,6 +9,7 @@
 
 #include "app/auto_align.h"
 #include "app/refine_sequence.h"
+#include "cli/refine_json.h"
 #include "io/project_store.h"
 
 namespace alidade::cli {
@@ -17,11 +18,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-Json vec(const glm::dvec3& v) {
-  return {v.x, v.y, v.z};
-}
-
-Json jsonOf(const std::string& frame, const AlignmentSummary& summary) {
+Json jsonOf(const std::string& frame, const AlignmentSummary& summary, const std::vector<ExpectedError>& expected) {
   const AlignmentEvidence& e = summary.evidence;
   Json json = {{"frame", frame}, {"converged", summary.converged}, {"reason", summary.reason}, {"confidence", summary.confidence}};
   json["evidence"] = {{"places_sought", e.patches}, {"places_found", e.matched}, {"places_agreeing", e.inliers},
@@ -35,6 +32,8 @@ Json jsonOf(const std::string& frame, const AlignmentSummary& summary) {
   json["sigma0"] = summary.estimate.sigma0;
   json["position_std_m"] = vec(summary.estimate.positionStdM);
   json["rotation_std_rad"] = vec(summary.estimate.rotationStdRad);
+  json["ellipse_95"] = ellipseOf(positionEllipse(summary.estimate.covariance));
+  json["expected_error_mm"] = expectedOf(expected);
   json["moved_m"] = vec(summary.cameraFromWorld.centre() - summary.startCameraFromWorld.centre());
   json["turned_rad"] = rotationAngleBetween(summary.cameraFromWorld, summary.startCameraFromWorld);
   return json;
@@ -92,7 +91,11 @@ Result<Answer> refineAutomatically(const RefinePictures& wanted, const Progress&
       continue;
     }
     if (summary->converged) ++converged;
-    list.push_back(jsonOf(name, *summary));
+    const Camera& camera = project->findCamera(project->findFrame(frames[i])->camera)->camera;
+    std::vector<ExpectedError> expected;
+    for (const glm::dvec3& point : wanted.at)
+      expected.push_back(expectedError(camera, summary->cameraFromWorld, summary->estimate.covariance, point));
+    list.push_back(jsonOf(name, *summary, expected));
     answer.text += frames.size() == 1 ? summary->report()
                                       : fmt::format("{}: {}\n", name,
                                                     summary->converged ? fmt::format("converged, confidence {:.0f} %, expected error {:.2f} px",
@@ -114,7 +117,7 @@ Result<Answer> refineTogether(const RefinePictures& wanted, const Progress& prog
   if (!loaded) return fail(loaded.error());
   PictureCache pictures;
   SequenceOptions options;
-  options.alignment = wanted.options, options.everyNth = wanted.keyframes, options.ties = wanted.ties;
+  options.alignment = wanted.options, options.everyNth = wanted.keyframes, options.ties = wanted.ties, options.at = wanted.at;
   const auto summary = refineSequence(*project, alignmentScene(*project, loaded->data, wanted.to.value_or(alignmentTarget(*project))), pictures, options, wanted.dryRun, progress.part(0.1, 1));
   if (!summary) return fail(summary.error());
   const bool save = summary->converged && !wanted.dryRun;
@@ -130,6 +133,7 @@ Result<Answer> refineTogether(const RefinePictures& wanted, const Progress& prog
     if (f.refined) {
       const AdjustedPose& pose = summary->poseOf(i);
       frame["position_std_m"] = vec(pose.positionStdM), frame["rotation_std_rad"] = vec(pose.rotationStdRad);
+      frame["ellipse_95"] = ellipseOf(pose.ellipse), frame["expected_error_mm"] = expectedOf(summary->expectedIn(i));
     }
     frames.push_back(std::move(frame));
   }

@@ -5,6 +5,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "app/auto_align.h"
 #include "app/rig_network.h"
@@ -19,6 +20,7 @@ struct RefinePictures {
   bool dryRun = false;
   std::optional<AlignTo> to = {};  ///< none: alignmentTarget()
   MotionTies ties = {};            ///< of a sequence
+  std::vector<glm::dvec3> at = {}; ///< where the expected error is wanted
 };
 
 /// "mounts" and "clocks" of an adjustment.

@@ -144,8 +144,8 @@ TEST(CommandLine, ADegenerateSetIsRefusedWithItsReasonAndTheProjectUnchanged) {
 
 TEST(CommandLine, RefineRefusesOptionsThatItWouldNotHeed) {
   const std::string rows = " --observations " + quoted(smallDemo() / "observations.csv");
-  for (const std::string& options : {std::string("--auto --at 1,2,3"), std::string("--auto --free rig"), std::string("--auto --rig"),
-                                     std::string("--auto --trajectory"), std::string("--sequence --at 1,2,3"), std::string("--auto --keyframes 5"),
+  for (const std::string& options : {std::string("--auto --free rig"), std::string("--auto --rig"),
+                                     std::string("--auto --trajectory"), std::string("--auto --keyframes 5"),
                                      "--keyframes 5" + rows, "--within 2" + rows, std::string("--within 2"), std::string("--to scan"),
                                      std::string("--auto --within nan")}) {
     const auto outcome = alidadeCli("refine --dry-run " + options + " " + demoProject());
@@ -155,12 +155,23 @@ TEST(CommandLine, RefineRefusesOptionsThatItWouldNotHeed) {
 }
 
 TEST(CommandLine, AlignsAFrameWithTheDesignAndSaysWhatItKnows) {
-  const auto aligned = alidadeCli("refine --json --auto --to design --frame 0 --within 3 --dry-run " + demoProject());
+  // A point that the frame sees, from its own control.
+  std::ifstream file(smallDemo() / "observations.csv");
+  std::string header, row;
+  std::getline(file, header), std::getline(file, row);
+  std::vector<std::string> cells(1);
+  for (const char c : row) c == ',' ? cells.emplace_back() : cells.back().append(1, c);
+  const std::string point = cells[2] + "," + cells[3] + "," + cells[4];
+  const auto aligned = alidadeCli("refine --json --auto --to design --frame 0 --within 3 --dry-run --at " + point + " " + demoProject());
   ASSERT_EQ(aligned.exitCode, 0) << aligned.errors << aligned.output;
   const auto frame = aligned.json()["frames"][0];
   EXPECT_TRUE(frame["converged"]) << frame["reason"];
   EXPECT_GT(frame["evidence"]["places_agreeing"], 100);
   EXPECT_LT(frame["turned_rad"], 0.01);
+  EXPECT_GT(frame["ellipse_95"]["semi_major_m"], 0);
+  EXPECT_GE(frame["ellipse_95"]["semi_major_m"], frame["ellipse_95"]["semi_minor_m"]);
+  EXPECT_GT(frame["expected_error_mm"], 0);
+  EXPECT_LT(frame["expected_error_mm"], 500);
   EXPECT_FALSE(aligned.json()["saved"]);
   EXPECT_EQ(alidadeCli("refine --auto --to wall " + demoProject()).exitCode, 2);
   EXPECT_EQ(alidadeCli("refine --to design --observations x.csv " + demoProject()).exitCode, 2);

@@ -116,6 +116,7 @@ TEST_F(RefineSequence, TwoCamerasOnOneRigFindWhereTheySit) {
     }
   SequenceOptions options;
   options.ties.rig = options.ties.freeMounts = true;
+  options.at = {Room::world({1, 4, 1}), Room::world({0, -50, 0})};
   const auto summary = refineSequence(m_project, s_scene, m_pictures, options, false, Progress());
   ASSERT_TRUE(summary) << summary.error().text();
   ASSERT_TRUE(summary->converged) << summary->report(m_project);
@@ -124,6 +125,13 @@ TEST_F(RefineSequence, TwoCamerasOnOneRigFindWhereTheySit) {
   EXPECT_LT(glm::distance(summary->adjustment.cameraFromBody[0].centre(), mount.centre()), 0.003);
   EXPECT_LT(rotationAngleBetween(summary->adjustment.cameraFromBody[0], mount), 5e-4);
   for (std::size_t i = 0; i < m_truth.size(); ++i) EXPECT_LT(errorPx(i), 0.5) << summary->report(m_project);
+  for (std::size_t i = 0; i < m_truth.size(); ++i) {
+    const auto expected = summary->expectedIn(i);
+    ASSERT_EQ(expected.size(), 2u);
+    EXPECT_GT(expected[0].millimetres, 0);
+    EXPECT_LT(expected[0].millimetres, 10);
+    EXPECT_TRUE(std::isnan(expected[1].millimetres)) << "behind it";
+  }
   ASSERT_TRUE(m_project.cameras[1].mount);
   EXPECT_EQ(m_project.cameras[1].mount->body, "camera");
   EXPECT_EQ(m_project.cameras[1].mount->cameraFromBody.translation, summary->adjustment.cameraFromBody[0].translation);
