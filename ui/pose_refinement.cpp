@@ -34,8 +34,7 @@ Result<RefineOutcome> run(const RefineTask& task, Project& project, const Progre
   const auto refinement = networkOf(project, task.frame, task.rows, task.freedom);
   if (!refinement) return fail(refinement.error());
   NetworkOptions options;
-  for (std::size_t i = 0; i < refinement->frames.size(); ++i)
-    if (refinement->network.frames[i].name == task.frame) options.at.push_back({static_cast<int>(i), task.judgedAt});
+  for (std::size_t i = 0; i < refinement->frames.size(); ++i) options.at.push_back({static_cast<int>(i), task.judgedAt});
   auto summary = refineNetwork(project, *refinement, options, false, progress);
   if (!summary) return fail(summary.error());
   RefineOutcome outcome;
@@ -226,8 +225,9 @@ void PoseRefinement::alignSequence() {
   if (m_running || m_session.project()->frames.empty()) return;
   start(
       tr("Align all frames"),
-      [data = m_session.data()](Project& project, const Progress& progress) {
+      [data = m_session.data(), at = m_judgedAt](Project& project, const Progress& progress) {
         SequenceOptions options;
+        if (at) options.at.push_back(*at);
         options.everyNth = std::max(1, static_cast<int>(project.frames.size()) / kMostKeyframes);
         PictureCache pictures(2);
         return refineSequence(project, alignmentScene(project, *data, alignmentTarget(project)), pictures, options, false, progress);
@@ -251,21 +251,21 @@ void PoseRefinement::showCandidate() {
   const Frame* frame = m_candidate ? m_candidate->findFrame(m_session.frame()) : nullptr;
   const Frame* shown = m_session.currentFrame();
   const bool differs = frame && shown && frame->cameraFromWorld && !samePose(frame->cameraFromWorld, shown->cameraFromWorld);
-  m_session.setCandidatePose(differs ? frame->cameraFromWorld : std::nullopt);
+  m_session.setCandidate(differs ? std::optional(*frame) : std::nullopt);
   emit changed();
 }
 
 void PoseRefinement::accept() {
   if (!m_candidate) return;
   const auto candidate = std::exchange(m_candidate, nullptr);
-  m_session.setCandidatePose(std::nullopt);
+  m_session.setCandidate(std::nullopt);
   m_session.change(m_candidateName, [&](Project& project) { apply(*m_base, *candidate, project); });
   emit changed();
 }
 
 void PoseRefinement::drop() {
   forget();
-  m_session.setCandidatePose(std::nullopt);
+  m_session.setCandidate(std::nullopt);
 }
 
 void PoseRefinement::forget() {
@@ -280,6 +280,14 @@ void PoseRefinement::forgetSummaries() {
   m_sequence.reset();
   m_frameNames.clear();
   m_outliers.clear();
+}
+
+std::optional<ExpectedError> PoseRefinement::expectedHere() const {
+  const Frame* frame = m_session.currentFrame();
+  const auto name = frame ? std::find(m_frameNames.begin(), m_frameNames.end(), frame->name) : m_frameNames.end();
+  if (!m_summary || name == m_frameNames.end()) return std::nullopt;
+  const auto index = static_cast<std::size_t>(name - m_frameNames.begin());
+  return index < m_summary->expected.size() ? std::optional(m_summary->expected[index]) : std::nullopt;
 }
 
 std::optional<double> PoseRefinement::residualM(const Observation& observation) const {

@@ -60,6 +60,8 @@ class PoseRefinement : public QObject {
   const std::optional<AlignmentSummary>& alignment() const { return m_alignment; }
   const std::optional<SequenceSummary>& sequence() const { return m_sequence; }
   const std::vector<std::string>& frameNames() const { return m_frameNames; }  ///< of the summary's poses
+  /// Of the overlay in the current frame, at the chosen point or amid the observed ones; nothing where it was not refined.
+  std::optional<ExpectedError> expectedHere() const;
   bool isOutlier(ObservationId id) const { return m_outliers.contains(id); }
   /// Fitted - observed at the pose now shown; nothing where it is not seen.
   std::optional<glm::dvec2> residual(const Observation& observation) const;

@@ -33,6 +33,7 @@ PropertiesPanel::PropertiesPanel(Session& session, QWidget* parent)
   connect(&session, &Session::selectionChanged, this, &PropertiesPanel::rebuild);
   connect(&session, &Session::frameChanged, this, &PropertiesPanel::rebuild);
   connect(&session, &Session::projectChanged, this, &PropertiesPanel::rebuild);
+  connect(&session, &Session::shownPoseChanged, this, &PropertiesPanel::rebuild);
   connect(&session, &Session::dataChanged, this, &PropertiesPanel::rebuild);
   connect(&session, &Session::pictureReady, this, &PropertiesPanel::refreshShares);
   rebuild();
@@ -164,7 +165,7 @@ void PropertiesPanel::showAnnotation(const Annotation& annotation) {
 }
 
 void PropertiesPanel::showFrame() {
-  const Frame* frame = m_session.currentFrame();
+  const Frame* frame = m_session.shownFrame();
   if (!frame) return;
   const CameraRecord* camera = m_session.currentCamera();
   heading(tr("Pose of %1").arg(text(frame->name)), poseSummary(*frame));

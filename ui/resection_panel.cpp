@@ -248,6 +248,11 @@ void ResectionPanel::refresh() {
   refreshSummary();
 }
 
+QString ResectionPanel::chosenPointWords(const ExpectedError& expected) const {
+  return std::isfinite(expected.millimetres) ? tr("Overlay good to %1 mm at the chosen point (95 %)").arg(expected.millimetres, 0, 'f', 1)
+                                             : tr("The chosen point is not in view");
+}
+
 QString ResectionPanel::alignmentWords() const {
   const AlignmentSummary& found = *m_refinement.alignment();
   if (!found.converged)
@@ -255,8 +260,10 @@ QString ResectionPanel::alignmentWords() const {
   const glm::dvec3 moved = found.cameraFromWorld.centre() - found.startCameraFromWorld.centre();
   QStringList lines{tr("✓ Aligned, confidence %1").arg(formatPercent(found.confidence)),
                     tr("%1 of %2 patches agree").arg(found.evidence.inliers).arg(found.evidence.patches),
-                    tr("Overlay good to %1 px (95 %)").arg(found.evidence.expectedPx, 0, 'f', 2),
-                    tr("Moved %1").arg(formatMillimetres(glm::length(moved)))};
+                    tr("Overlay good to %1 px (95 %)").arg(found.evidence.expectedPx, 0, 'f', 2)};
+  if (const CameraRecord* camera = m_session.currentCamera(); camera && m_refinement.judgedAt())
+    lines << chosenPointWords(expectedError(camera->camera, found.cameraFromWorld, found.estimate.covariance, *m_refinement.judgedAt()));
+  lines << tr("Moved %1").arg(formatMillimetres(glm::length(moved)));
   if (m_refinement.hasCandidate()) lines << tr("Hold B to see the pose before.");
   return lines.join('\n');
 }
@@ -318,10 +325,9 @@ void ResectionPanel::refreshSummary() {
                  .arg(gonFromRadians(pose.rotationStdRad.y) * 1000, 0, 'f', 1)
                  .arg(gonFromRadians(pose.rotationStdRad.z) * 1000, 0, 'f', 1);
   }
-  for (const ExpectedError& expected : summary->expected)
-    lines << (m_refinement.judgedAt() ? tr("Overlay good to %1 mm at the chosen point (95 %)")
-                                      : tr("Overlay good to %1 mm among the points (95 %)"))
-                 .arg(expected.millimetres, 0, 'f', 1);
+  if (const auto expected = m_refinement.expectedHere())
+    lines << (m_refinement.judgedAt() ? chosenPointWords(*expected)
+                                      : tr("Overlay good to %1 mm among the points (95 %)").arg(expected->millimetres, 0, 'f', 1));
   for (std::size_t i = 0; i < summary->cameraAccuracy.size(); ++i)
     if (const CameraAccuracy& known = summary->cameraAccuracy[i]; !known.covariance.empty() && known.std(0) > 0)
       lines << tr("Focal length %1 ± %2 px").arg(summary->cameras[i].fx, 0, 'f', 2).arg(known.std(0), 0, 'f', 2);

@@ -50,6 +50,7 @@ class ResectionPanel : public QWidget {
   void refresh();
   void refreshSummary();
   QString alignmentWords() const;
+  QString chosenPointWords(const ExpectedError& expected) const;
   QStringList sequenceWords() const;
   void startPick();
   void pickScanPoint(const QString& hint, const std::function<void(const glm::dvec3&)>& picked);

@@ -50,6 +50,10 @@ const Frame* Session::currentFrame() const {
   return m_project->findFrame(m_frame);
 }
 
+const Frame* Session::shownFrame() const {
+  return m_candidate && !m_showBefore ? &*m_candidate : currentFrame();
+}
+
 const CameraRecord* Session::currentCamera() const {
   const Frame* frame = currentFrame();
   return frame ? m_project->findCamera(frame->camera) : nullptr;
@@ -262,8 +266,10 @@ void Session::setResidualsShown(bool on) {
   if (std::exchange(m_residuals, on) != on) requestRender();
 }
 
-void Session::setCandidatePose(std::optional<RigidTransform> pose) {
-  m_candidate = std::move(pose);
+void Session::setCandidate(std::optional<Frame> frame) {
+  const bool was = m_candidate.has_value();
+  m_candidate = std::move(frame);
+  if (was || m_candidate) emit shownPoseChanged();
   requestRender();
 }
 
@@ -276,6 +282,7 @@ void Session::setShowBefore(bool on) {
   if (on && !canShowBefore()) return;
   if (std::exchange(m_showBefore, on) == on) return;
   emit beforeShown(on);
+  emit shownPoseChanged();
   requestRender();
 }
 
@@ -319,7 +326,7 @@ void Session::sendRequest() {
   if (m_showBefore)
     request.pose = m_candidate ? frame->cameraFromWorld : frame->originalCameraFromWorld;
   else
-    request.pose = m_candidate;
+    request.pose = m_candidate ? m_candidate->cameraFromWorld : std::nullopt;
   request.before = m_showBefore;
   if (m_dragging) request.pace = m_pace;
   if (request.pace && m_pace.frameTimeMs > 0 && m_renderMs > m_pace.frameTimeMs && m_width > 0) {

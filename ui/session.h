@@ -83,8 +83,10 @@ class Session : public QObject {
   // What only this window shows: kept out of the project.
   void setRawOnly(bool on);
   void setResidualsShown(bool on);
-  void setCandidatePose(std::optional<RigidTransform> pose);  ///< a refinement not yet accepted
-  const std::optional<RigidTransform>& candidatePose() const { return m_candidate; }
+  void setCandidate(std::optional<Frame> frame);  ///< the current frame with a pose that is not yet accepted
+  const std::optional<Frame>& candidate() const { return m_candidate; }
+  /// The current frame with the pose that is shown: the candidate's, unless what was before is looked at.
+  const Frame* shownFrame() const;
   void setShowBefore(bool on);
   bool canShowBefore() const;
   void setViewSize(int width, int height);  ///< of the result wanted, pixels; 0: raw size
@@ -114,6 +116,7 @@ class Session : public QObject {
   void renderFailed(const alidade::Error& error);
   void modifiedChanged();
   void beforeShown(bool on);
+  void shownPoseChanged();  ///< of the same frame: a candidate came or went, or before and after
   void playedReady(std::shared_ptr<const alidade::RenderResult> result);  ///< to be shown when it is due
   void playedFailed();
 
@@ -137,7 +140,7 @@ class Session : public QObject {
   FrameId m_frame;
 
   bool m_rawOnly = false, m_residuals = true, m_showBefore = false, m_dragging = false, m_playing = false;
-  std::optional<RigidTransform> m_candidate;
+  std::optional<Frame> m_candidate;
   int m_width = 0, m_height = 0;
   std::shared_ptr<const RenderResult> m_rendered;
   double m_renderMs = 0;

@@ -70,6 +70,7 @@ StatusLine::StatusLine(Session& session, OverlayView& view, QWidget* parent)
   connect(&session, &Session::structureChanged, this, &StatusLine::refreshPicture);
   connect(&session, &Session::frameChanged, this, &StatusLine::refreshPose);
   connect(&session, &Session::projectChanged, this, &StatusLine::refreshPose);
+  connect(&session, &Session::shownPoseChanged, this, &StatusLine::refreshPose);
   connect(m_problems, &QToolButton::clicked, this, [this] {
     m_problemCount = 0;
     m_problems->setVisible(false);
@@ -102,8 +103,9 @@ void StatusLine::refreshCursor() {
 }
 
 void StatusLine::refreshPose() {
-  const Frame* frame = m_session.currentFrame();
-  m_pose->setText(frame ? poseSummary(*frame) : QString());
+  const Frame* frame = m_session.shownFrame();
+  const bool proposed = frame && frame != m_session.currentFrame();
+  m_pose->setText(!frame ? QString() : proposed ? tr("%1, not accepted yet").arg(poseSummary(*frame)) : poseSummary(*frame));
 }
 
 void StatusLine::refreshPicture() {

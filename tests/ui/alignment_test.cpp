@@ -55,13 +55,24 @@ TEST_F(AlignmentWindow, ADisturbedPoseIsFoundAgainFromTheDesignAcceptedAndUndone
   const double startPx = apartPx(before, truth, off);
   ASSERT_GT(startPx, 5);
 
+  refinement->setJudgedAt(session().project()->controlPoints.front().position);
+  auto* pose = window->findChild<QLabel*>("statusPose");
+  EXPECT_TRUE(pose->text().startsWith("From file")) << pose->text().toStdString();
   QTest::mouseClick(window->findChild<QPushButton*>("align"), Qt::LeftButton);
   ASSERT_TRUE(waitFor([this] { return !refinement->running(); }));
   ASSERT_TRUE(refinement->alignment());
   ASSERT_TRUE(refinement->hasCandidate()) << refinement->alignment()->report();
   EXPECT_TRUE(summary->text().contains("Aligned")) << summary->text().toStdString();
+  EXPECT_TRUE(summary->text().contains("chosen point")) << summary->text().toStdString();
+  EXPECT_TRUE(pose->text().startsWith("Refined") && pose->text().endsWith("not accepted yet")) << pose->text().toStdString();
+  session().setShowBefore(true);
+  EXPECT_TRUE(pose->text().startsWith("From file")) << "what is shown then";
+  session().setShowBefore(false);
+  ASSERT_TRUE(settle());
+  picture("aligned");
   QTest::mouseClick(window->findChild<QPushButton*>("accept"), Qt::LeftButton);
   ASSERT_TRUE(settle());
+  EXPECT_FALSE(pose->text().contains("accepted"));
   EXPECT_LT(apartPx(before, truth, *session().currentFrame()->cameraFromWorld), 1.0) << "from " << startPx << " px";
   EXPECT_EQ(session().currentFrame()->poseSource, PoseSource::Refined);
   session().undo().undo();
@@ -69,6 +80,7 @@ TEST_F(AlignmentWindow, ADisturbedPoseIsFoundAgainFromTheDesignAcceptedAndUndone
 }
 
 TEST_F(AlignmentWindow, AllFramesAreAlignedTogether) {
+  refinement->setJudgedAt(session().project()->controlPoints.front().position);
   QTest::mouseClick(window->findChild<QPushButton*>("alignAll"), Qt::LeftButton);
   EXPECT_TRUE(refinement->running());
   ASSERT_TRUE(waitFor([this] { return !refinement->running(); }, 180'000));
@@ -77,6 +89,9 @@ TEST_F(AlignmentWindow, AllFramesAreAlignedTogether) {
   EXPECT_TRUE(refinement->sequence()->converged) << refinement->sequence()->report(*session().project());
   EXPECT_TRUE(summary->text().contains("keyframes")) << summary->text().toStdString();
   EXPECT_TRUE(refinement->hasCandidate());
+  ASSERT_TRUE(refinement->expectedHere());
+  EXPECT_EQ(refinement->expectedHere()->world, session().project()->controlPoints.front().position);
+  picture("aligned together");
 }
 
 }  // namespace alidade::test

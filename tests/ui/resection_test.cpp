@@ -260,6 +260,7 @@ TEST_F(ResectionWindow, DepthsAndSurfacesStandAmongTheObservations) {
   const auto flags = [&](int row) { return table->model()->flags(table->model()->index(row, ObservationModel::Check)); };
   EXPECT_TRUE(flags(1) & Qt::ItemIsUserCheckable);
   EXPECT_FALSE(flags(2) & Qt::ItemIsUserCheckable) << "a surface leaves nothing to look at beside the fit";
+  picture("observations");
   ASSERT_EQ(view().probe().description()->residuals.size(), 1u) << "only what was seen in the picture is drawn there";
 
   window->actions()[Command::Undo]->trigger();

@@ -61,10 +61,6 @@ class OpenVideo : public OpenWindow {
     speed->setCurrentIndex(index);
     speed->activated(index);
   }
-  /// For looking at: into the folder of ALIDADE_TEST_PICTURES.
-  void picture(const QString& name) {
-    if (const char* into = std::getenv("ALIDADE_TEST_PICTURES")) window->grab().save(QStringLiteral("%1/%2.png").arg(into, name));
-  }
   QString rateText() { return named<QLabel>("playRate")->text(); }
 };
 

@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <cstdlib>
 #include <functional>
 #include <memory>
 #include <string>
@@ -41,6 +42,10 @@ class OpenWindow : public ::testing::Test {
   /// The cursor comes to rest there. (QTest moves the server's pointer and does not wait for it.)
   void hover(const glm::dvec2& raw);
   void click(const glm::dvec2& raw, Qt::MouseButton button = Qt::LeftButton);
+  /// For looking at: into the folder of ALIDADE_TEST_PICTURES.
+  void picture(const QString& name) {
+    if (const char* into = std::getenv("ALIDADE_TEST_PICTURES")) window->grab().save(QStringLiteral("%1/%2.png").arg(into, name));
+  }
   void key(Qt::Key key, Qt::KeyboardModifiers modifiers = Qt::NoModifier) {
     QTest::keyClick(&view(), key, modifiers);
   }
