@@ -91,6 +91,8 @@ TEST_F(AlignmentWindow, AllFramesAreAlignedTogether) {
   EXPECT_TRUE(refinement->hasCandidate());
   ASSERT_TRUE(refinement->expectedHere());
   EXPECT_EQ(refinement->expectedHere()->world, session().project()->controlPoints.front().position);
+  ASSERT_TRUE(settle());
+  EXPECT_TRUE(summary->text().contains("chosen point")) << summary->text().toStdString();
   picture("aligned together");
 }
 
