@@ -169,10 +169,21 @@ Result<Description> describeProject(const std::string& path) {
   out.json = {{"kind", "project"}, {"name", project->name}, {"crs", project->crs}, {"scans", project->scans.size()},
               {"designs", project->designs.size()}, {"cameras", project->cameras.size()}, {"frames", project->frames.size()},
               {"frames_with_pose", posed}, {"stake_points", project->stakePoints.size()},
-              {"control_points", project->controlPoints.size()}, {"annotations", project->annotations.size()},
-              {"source_problems", Json::array()}};
+              {"control_points", project->controlPoints.size()}, {"observations", project->observations.size()},
+              {"annotations", project->annotations.size()}, {"mounts", Json::array()}, {"source_problems", Json::array()}};
   out.text = fmt::format("  project   {}\n  scans     {}\n  designs   {}\n  frames    {} ({} with a pose)\n", project->name,
                          project->scans.size(), project->designs.size(), project->frames.size(), posed);
+  for (const CameraRecord& camera : project->cameras) {
+    if (!camera.mount) continue;
+    const RigidTransform bodyFromCamera = camera.mount->cameraFromBody.inverse();
+    const glm::dvec3& at = bodyFromCamera.translation;
+    const glm::dquat& q = bodyFromCamera.rotation;
+    const glm::dvec3 &offset = camera.mount->offsetStdM, &turn = camera.mount->rotationStdRad;
+    out.json["mounts"].push_back({{"camera", camera.name}, {"body", camera.mount->body}, {"position_on_body_m", {at.x, at.y, at.z}},
+                                  {"body_from_camera_wxyz", {q.w, q.x, q.y, q.z}}, {"offset_std_m", {offset.x, offset.y, offset.z}},
+                                  {"rotation_std_rad", {turn.x, turn.y, turn.z}}});
+    out.text += fmt::format("  mounted   {} at {:.4f} {:.4f} {:.4f} m on {}\n", camera.name, at.x, at.y, at.z, camera.mount->body);
+  }
   for (const SourceProblem& problem : checkSources(*project)) {
     out.json["source_problems"].push_back(problem.path + " " + problem.what);
     out.text += fmt::format("  problem   {} {}\n", problem.path, problem.what);

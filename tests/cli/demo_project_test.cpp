@@ -1,6 +1,7 @@
 // SPDX-FileCopyrightText: 2026 the Alidade authors
 // SPDX-License-Identifier: BSD-3-Clause
 
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <sstream>
@@ -95,6 +96,22 @@ TEST(CommandLine, RefinesAPoseFromObservationsAndRemembersIt) {
   EXPECT_EQ(locked.json()["position_std_m"][0], 0.0);
 }
 
+TEST(CommandLine, ARigsMountsStayInTheProject) {
+  const auto rig = scratch() / "rig.json", project = scratch() / "rig.alidade";
+  std::ofstream(scratch() / "way.txt") << "-1 0 0 0 0 0 0 1\n0 1 0 0 0 0 0 1\n1 2 0 0 0 0 0 1\n";
+  std::ofstream(rig) << R"({"alidade_rig": 1, "trajectory": "way.txt", "cameras": [{"name": "left", "pictures": )" << smallDemo() / "images"
+                     << R"(, "calibration": )" << smallDemo() / "camera.yml" << R"(, "rate_hz": 15, "start_s": 0,
+    "sensor_from_camera": {"position_m": [0.1, -0.2, 0.05], "rotation_wxyz": [0.6, 0.8, 0, 0]}}]})";
+  const auto made = alidadeCli("new " + quoted(project) + " --rig " + quoted(rig));
+  ASSERT_EQ(made.exitCode, 0) << made.errors;
+  const auto mounts = alidadeCli("info --json " + quoted(project)).json()["files"][0]["mounts"];
+  ASSERT_EQ(mounts.size(), 1u);
+  EXPECT_EQ(mounts[0]["camera"], "left");
+  EXPECT_EQ(mounts[0]["body"], "way");
+  for (int i = 0; i < 3; ++i) EXPECT_NEAR(mounts[0]["position_on_body_m"][i], (std::array{0.1, -0.2, 0.05}[i]), 1e-12);
+  EXPECT_NEAR(mounts[0]["body_from_camera_wxyz"][1], 0.8, 1e-12);
+}
+
 TEST(CommandLine, AProjectKeepsDepthsAndRefinesFromThem) {
   const auto project = smallDemo() / "kept.alidade";
   std::filesystem::copy_file(smallDemo() / "demo.alidade", project, std::filesystem::copy_options::overwrite_existing);
@@ -128,6 +145,7 @@ TEST(CommandLine, AProjectKeepsDepthsAndRefinesFromThem) {
   const auto own = alidadeCli("refine --json --dry-run --frame 0 " + quoted(project));
   ASSERT_EQ(own.exitCode, 0) << own.errors << own.output;
   EXPECT_NEAR(depthOf(own.json()), -0.002, 0.002);
+  EXPECT_EQ(alidadeCli("info --json " + quoted(project)).json()["files"][0]["observations"], own.json()["residuals"].size());
   EXPECT_EQ(own.json()["residuals"].size(), first.json()["residuals"].size() + 1);
   EXPECT_NE(alidadeCli("refine --dry-run --frame 0 " + quoted(project)).output.find("depth"), std::string::npos);
 }

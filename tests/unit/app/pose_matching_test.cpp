@@ -202,7 +202,9 @@ TEST(PoseMatching, ARigsTrajectoryServesEachCameraFromItsOwnPlace) {
   }
   std::vector<CameraSource> sources;
   for (const int side : {-1, 1}) {  // 0.2 m to either side along the sensor's x
-    CameraSource source{"rig.json", rigCameraSet(trajectory, {{1, 0, 0, 0}, {0.2 * side, 0, 0.1}}, pinhole(side < 0 ? 100 : 200, 80), 1.0), {}};
+    CameraSource source{"rig.json", rigCameraSet(trajectory, {{1, 0, 0, 0}, {0.2 * side, 0, 0.1}}, pinhole(side < 0 ? 100 : 200, 80), 1.0)};
+    source.name = side < 0 ? "left" : "right";
+    source.mount = CameraMount{"sensor", RigidTransform{{1, 0, 0, 0}, {-0.2 * side, 0, -0.1}}};
     for (std::int64_t i = side < 0 ? 1 : 3; i <= (side < 0 ? 2 : 4); ++i) source.only.push_back(FrameId{i});
     sources.push_back(source);
   }
@@ -214,7 +216,12 @@ TEST(PoseMatching, ARigsTrajectoryServesEachCameraFromItsOwnPlace) {
     // The sensor's x points north now.
     const glm::dvec3 expected(10 * frame.timeSecs, i < 2 ? -0.2 : 0.2, 0.1);
     EXPECT_LT(glm::length(frame.cameraFromWorld->centre() - expected), 1e-9) << i;
-    EXPECT_EQ(project.findCamera(frame.camera)->camera.width(), i < 2 ? 100 : 200);
+    const CameraRecord& camera = *project.findCamera(frame.camera);
+    EXPECT_EQ(camera.camera.width(), i < 2 ? 100 : 200);
+    EXPECT_EQ(camera.name, i < 2 ? "left" : "right");
+    ASSERT_TRUE(camera.mount);
+    EXPECT_EQ(camera.mount->body, "sensor");
+    EXPECT_EQ(camera.mount->cameraFromBody.centre().x, i < 2 ? -0.2 : 0.2);
   }
 }
 
