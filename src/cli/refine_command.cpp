@@ -279,7 +279,7 @@ void addRefine(Verbs& verbs) {
       ->check(checkedBy([](const std::string& list) { NetworkFreedom ignored; return applyLocks(list, ignored); }, "LIST"));
   auto* free = command->add_option("--free", arguments->free, "Of focal,principal-point,distortion,rig,clock, beside the poses")
       ->check(checkedBy([](const std::string& list) { NetworkFreedom ignored; return applyFree(list, ignored); }, "LIST"));
-  auto* rig = command->add_flag("--rig", arguments->rig, "Cameras with pictures of the same moments sit on one body, as the poses say; --free rig adjusts where");
+  auto* rig = command->add_flag("--rig", arguments->rig, "Cameras with pictures of the same moments sit on one body, as the project or else the poses say; --free rig adjusts where");
   auto* trajectory = command->add_flag("--trajectory", arguments->trajectory, "Hold the poses to their trajectories; --free clock adjusts the clock offset, too");
   command->add_option("--at", arguments->at, "E,N,H where the expected error is wanted")
       ->check(checkedBy(parsePoint, "POINT"));
