@@ -26,7 +26,8 @@ constexpr double kLeastAgreeing = 0.5;    // of what was found
 constexpr double kLeastFound = 0.15;      // of the patches: the scene may have changed
 constexpr double kLeastSpread = 0.5;
 constexpr double kMostRival = 0.9;
-constexpr double kMostAside = 0.79;  // of right poses up to 0.78, of wrong ones from 0.80
+constexpr double kMostAside = 0.79;  // of right poses up to 0.78, of wrong ones from 0.78
+constexpr double kLeastAside = 0.15;  // of the margins of edges and information together: a wrong pose had 0.09, right ones of the same site 0.8
 
 double entropy(const double* counts, int size, double total) {
   double sum = 0;
@@ -147,6 +148,7 @@ void judge(const FineFit& fit, const PictureLevel& level, const AlignmentOptions
   const glm::dvec3 moved = pose.centre() - summary.startCameraFromWorld.centre();
   const double turned = rotationAngleBetween(pose, summary.startCameraFromWorld);
 
+  const double asideMargin = margin(-e.asideScore, -kMostAside, -0.6), informationMargin = margin(e.informationAside - e.information, 0, 0.01);
   const std::vector<Check> checks = {
       {margin(e.inliers, kLeastInliers, 100), fmt::format("only {} places of the scene agree with the picture", e.inliers)},
       {margin(static_cast<double>(e.inliers) / std::max(1, e.matched), kLeastAgreeing, 0.8),
@@ -158,9 +160,10 @@ void judge(const FineFit& fit, const PictureLevel& level, const AlignmentOptions
        fmt::format("the pose is known to {:.1f} px only, {:.1f} px are accepted", e.expectedPx, options.acceptedPx)},
       {margin(-e.halvesPx, -options.acceptedPx, -0.3 * options.acceptedPx),
        fmt::format("two halves of what was found give poses {:.1f} px apart", e.halvesPx)},
-      {margin(e.informationAside - e.information, 0, 0.01), "the picture fits the scene no better than moved by a few pixels"},
+      {informationMargin, "the picture fits the scene no better than moved by a few pixels"},
       {margin(-e.rivalScore, -kMostRival, -0.6), "another pose fits nearly as well"},
-      {margin(-e.asideScore, -kMostAside, -0.6), "the edges fit nearly as well a few pixels aside"},
+      {asideMargin, "the edges fit nearly as well a few pixels aside"},
+      {asideMargin + informationMargin - kLeastAside, "edges and picture both fit nearly as well a few pixels aside"},
       {margin(-glm::length(moved), -1.5 * options.range.positionM, -1.2 * options.range.positionM),
        fmt::format("it ended {:.2f} m from the start, beyond the range", glm::length(moved))},
       {margin(-turned, -1.5 * options.range.rotationRad, -1.2 * options.range.rotationRad), "it ended beyond the range of attitudes"}};
