@@ -17,13 +17,14 @@ struct Run {
   vec4 x, y, z;  // rows: camera axes from node steps, then the node's origin
   vec4 size;     // footprint: size times depth, smallest, largest (0: one pixel), 1 where round
   ivec4 cells;   // first step of the normals' cells, then their shift
-  uvec4 what;    // payload of the first point, first normal (all ones: none), what footprints lose (a float's bits), unused
+  uvec4 what;    // payload of the first point, first normal (all ones: none), what footprints lose (a float's bits), 1: into levels
 };
 
 layout(std140, set = 0, binding = 0) uniform FrameBlock {
   LensUniform lens;
-  vec4 fold;     // fold-back radius squared
+  vec4 fold;     // fold-back radius squared, last level
   uvec4 frame;   // width, height, 1 where the payload is the colour, chunks
+  ivec4 levels[8];  // columns, rows, first pixel, margin: SplatLevels of src/raster/splat_levels.h
 };
 layout(std430, set = 0, binding = 1) readonly buffer PointBlock { uvec2 points[]; };  // x | y << 16, z | rgb565 << 16
 layout(std430, set = 0, binding = 2) readonly buffer ChunkBlock { uvec4 chunks[]; };  // run, first point, count, place in run
@@ -36,6 +37,22 @@ void drawPixel(vec2 at, float z, uint payload) {
   vec2 pixel = floor(at + 0.5);
   if (!(pixel.x >= 0.0 && pixel.y >= 0.0 && pixel.x < float(frame.x) && pixel.y < float(frame.y))) return;
   put(uint(pixel.y) * frame.x + uint(pixel.x), z, payload);
+}
+
+void drawIntoLevel(int level, ivec2 pixel, float z, uint payload) {
+  ivec4 of = levels[level];
+  ivec2 cell = (pixel >> level) + of.w;
+  if (all(greaterThanEqual(cell, ivec2(0))) && all(lessThan(cell, of.xy))) put(uint(cell.y * of.x + cell.x + of.z), z, payload);
+}
+
+// A cell at least as wide as the points are apart, and its detail in the next finer level.
+void drawLevels(Run run, vec2 at, float z, uint payload) {
+  precise float width = run.size.x * (1.0 / z);
+  int level = clamp(((floatBitsToInt(width) - 1) >> 23) - 126, 0, int(fold.y));
+  // Far outside of any level, where an int might not hold it.
+  ivec2 pixel = ivec2(clamp(floor(at + 0.5), vec2(-1e6), vec2(1e6)));
+  drawIntoLevel(level, pixel, z, payload);
+  if (level > 0) drawIntoLevel(level - 1, pixel, z, payload);
 }
 
 // How many times its inverse depth a footprint gains along u and along v, a pixel; false where it is of one depth.
@@ -112,6 +129,8 @@ void main() {
   uint payload = frame.z == 1u ? raw.y >> 16 : run.what.x + range.w + i;
   if (run.size.z == 0.0)
     drawPixel(at, q.z, payload);
+  else if (run.what.w == 1u)
+    drawLevels(run, at, q.z, payload);
   else
     drawFootprint(run, steps, xy, at, q.z, payload);
 }

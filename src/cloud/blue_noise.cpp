@@ -18,15 +18,9 @@
 
 #include <glm/glm.hpp>
 
+#include "base/widest.h"
 #include "cloud/blue_noise_pass.h"
 #include "cloud/morton.h"
-
-// The hot loops in the widest registers the processor has.
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
-#define ALIDADE_WIDEST __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#else
-#define ALIDADE_WIDEST
-#endif
 
 namespace alidade {
 

@@ -11,16 +11,10 @@
 #include <numeric>
 #include <utility>
 
+#include "base/widest.h"
 #include "cloud/morton.h"
 #include "cloud/node_spacing.h"
 #include "cloud/radix_sort.h"
-
-// Loops of plain integer arithmetic, in the widest registers the processor has.
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
-#define ALIDADE_WIDEST __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#else
-#define ALIDADE_WIDEST
-#endif
 
 namespace alidade {
 

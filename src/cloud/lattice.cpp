@@ -11,12 +11,7 @@
 #include <limits>
 #include <vector>
 
-// Loops in the widest registers the processor has. The build fuses nothing here: every processor finds the same bits.
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
-#define ALIDADE_WIDEST __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#else
-#define ALIDADE_WIDEST
-#endif
+#include "base/widest.h"
 
 namespace alidade {
 

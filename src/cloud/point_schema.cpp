@@ -9,12 +9,7 @@
 #include <cstring>
 #include <type_traits>
 
-// Loops of plain integer arithmetic, in the widest registers the processor has.
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
-#define ALIDADE_WIDEST __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#else
-#define ALIDADE_WIDEST
-#endif
+#include "base/widest.h"
 
 namespace alidade {
 

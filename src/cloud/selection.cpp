@@ -9,15 +9,9 @@
 #include <utility>
 
 #include "base/parallel.h"
+#include "base/widest.h"
 #include "cloud/radix_sort.h"
 #include "cloud/view_pyramid.h"
-
-// Loops of plain integer arithmetic, in the widest registers the processor has.
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
-#define ALIDADE_WIDEST __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#else
-#define ALIDADE_WIDEST
-#endif
 
 namespace alidade {
 

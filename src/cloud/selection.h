@@ -40,7 +40,7 @@ struct SelectionOptions {
   DensityLaw law = DensityLaw::PointsPerPixel;
   LevelThreshold threshold = LevelThreshold::ByDistance;
   double pointsPerSquareMetre = 150000.0;
-  double targetSpacingPx = 0.75;  ///< wanted distance between neighbours on screen at density 1
+  double targetSpacingPx = 1.0;  ///< wanted distance between neighbours on screen at density 1: a point a pixel
   std::uint64_t pointBudget = 0;  ///< over all stores; 0: none
 };
 

@@ -4,6 +4,7 @@
 #include "overlay/vulkan_splatter.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstring>
@@ -30,8 +31,9 @@ struct SplatFrameBlock {
   LensUniform lens;
   glm::vec4 fold;
   glm::uvec4 frame;
+  std::array<glm::ivec4, SplatLevels::kMost> levels;
 };
-static_assert(offsetof(SplatFrameBlock, fold) == 176 && sizeof(SplatFrameBlock) == 208);
+static_assert(offsetof(SplatFrameBlock, fold) == 176 && sizeof(SplatFrameBlock) == 208 + 16 * SplatLevels::kMost);
 
 /// Run of splat_points.glsl.
 struct SplatRunBlock {
@@ -83,7 +85,7 @@ SplatRunBlock blockOf(const SplatRun& run, std::uint32_t firstPoint, SplatPayloa
           {v.m[6], v.m[7], v.m[8], v.t[2]},
           {v.sizeTimesDepth, v.smallest, v.onePixel ? 0.0f : v.largest, v.round ? 1.0f : 0.0f},
           {v.cellLow[0], v.cellLow[1], v.cellLow[2], v.cellShift},
-          {base, v.cellNormals ? firstNormal : kNone, std::bit_cast<std::uint32_t>(v.sizeLess), 0}};
+          {base, v.cellNormals ? firstNormal : kNone, std::bit_cast<std::uint32_t>(v.sizeLess), v.levels ? 1 : 0}};
 }
 
 class VulkanSplatter final : public SplatDevice {
@@ -91,8 +93,7 @@ class VulkanSplatter final : public SplatDevice {
   VulkanSplatter(std::shared_ptr<GpuDevice> device, bool wide) : m_device(std::move(device)), m_wide(wide) {}
 
   Result<void> makePipelines();
-  Result<const void*> draw(std::span<const SplatRun* const> runs, int width, int height,
-                           SplatPayload payload) override;
+  Result<const void*> draw(std::span<const SplatRun* const> runs, const SplatLevels& levels, SplatPayload payload) override;
 
  private:
   Result<void> ensure(GpuBuffer& buffer, GpuBufferUse use, std::size_t bytes);
@@ -238,9 +239,8 @@ Result<const void*> VulkanSplatter::collect(std::size_t pixels, bool isPacked) {
   return static_cast<const void*>(m_joined.data());
 }
 
-Result<const void*> VulkanSplatter::draw(std::span<const SplatRun* const> runs, int width, int height,
-                                         SplatPayload payload) {
-  const std::size_t pixels = static_cast<std::size_t>(width) * height;
+Result<const void*> VulkanSplatter::draw(std::span<const SplatRun* const> runs, const SplatLevels& levels, SplatPayload payload) {
+  const std::size_t pixels = levels.pixels();
   const bool isPacked = payload != SplatPayload::None;
   if (auto ok = ensurePlanes(pixels, isPacked); !ok) return fail(ok.error());
   m_device->reloadChangedShaders();
@@ -252,8 +252,12 @@ Result<const void*> VulkanSplatter::draw(std::span<const SplatRun* const> runs, 
   if (!runs.empty()) {
     const SplatView& view = runs.front()->view;
     m_frameBlock.lens = lensUniform(*static_cast<const Camera*>(view.camera));
-    m_frameBlock.fold.x = std::min(view.foldBackSquared, 1e30f);
-    m_frameBlock.frame = {width, height, payload == SplatPayload::Colour ? 1 : 0, 0};
+    m_frameBlock.fold = {std::min(view.foldBackSquared, 1e30f), static_cast<float>(levels.count - 1), 0, 0};
+    m_frameBlock.frame = {levels.columns[0], levels.rows[0], payload == SplatPayload::Colour ? 1 : 0, 0};
+    for (int k = 0; k < levels.count; ++k) {
+      const int margin = k == 0 ? 0 : SplatLevels::kMargin;
+      m_frameBlock.levels[static_cast<std::size_t>(k)] = {levels.columns[k], levels.rows[k], levels.start[k], margin};
+    }
   }
   if (auto ok = drawBatches(batchesOf(runs), payload); !ok) return fail(ok.error());
   return collect(pixels, isPacked);

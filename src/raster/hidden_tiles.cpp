@@ -8,14 +8,13 @@
 #include <limits>
 
 #include "base/parallel.h"
-#include "raster/splat_merge.h"
 
 namespace alidade {
 
 namespace {
 
-constexpr int kSize = 1 << kHiddenTileLog2;
-constexpr std::size_t kTileRowsAtATime = 8;
+constexpr int kSize = HiddenTiles::kSize;
+constexpr std::size_t kTileRowsAtATime = 16;
 /// Boxes that are larger on screen are never hidden as a whole, and a lens would bend their edges far out of their corners.
 constexpr double kLargestPx = 600.0;
 
@@ -25,17 +24,19 @@ HiddenTiles::HiddenTiles(int width, int height)
     : m_width(width), m_height(height), m_columns((width + kSize - 1) / kSize), m_rows((height + kSize - 1) / kSize),
       m_own(static_cast<std::size_t>(m_columns) * m_rows), m_farthest(m_own.size()) {}
 
-template <class Pixel>
-void HiddenTiles::look(const SplatPlanes<Pixel>& planes) {
+void HiddenTiles::look(const LevelSurface& surface) {
+  constexpr int kCells = kSize / 2;
+  const int columns = surface.columns - 2 * SplatLevels::kMargin, rows = surface.inverse.height() - 2 * SplatLevels::kMargin;
   parallelFor(static_cast<std::size_t>(m_rows), kTileRowsAtATime, [&](std::size_t first, std::size_t last, int) {
-    MergedRows<Pixel> rows(planes, m_width, m_height, true);
-    std::vector<float> column(static_cast<std::size_t>(m_columns) * kSize);
-    for (std::size_t tile = first; tile < last; ++tile) {
-      std::ranges::fill(column, 0.0f);
-      const int end = std::min(static_cast<int>(tile + 1) * kSize, m_height);
-      for (int y = static_cast<int>(tile) * kSize; y < end; ++y) rows.addFarthest(y, column.data());
+    std::vector<float> least(static_cast<std::size_t>(m_columns) * kCells);
+    for (auto tile = static_cast<int>(first); tile < static_cast<int>(last); ++tile) {
+      std::ranges::fill(least, std::numeric_limits<float>::infinity());
+      for (int y = tile * kCells; y < std::min((tile + 1) * kCells, rows); ++y) {
+        const float* row = surface.inverse.row(y + SplatLevels::kMargin) + SplatLevels::kMargin;
+        for (int x = 0; x < columns; ++x) least[static_cast<std::size_t>(x)] = std::min(least[static_cast<std::size_t>(x)], row[x]);
+      }
       for (int x = 0; x < m_columns; ++x)
-        m_own[tile * static_cast<std::size_t>(m_columns) + static_cast<std::size_t>(x)] = *std::max_element(column.begin() + x * kSize, column.begin() + (x + 1) * kSize);
+        m_own[static_cast<std::size_t>(tile * m_columns + x)] = 1.0f / *std::min_element(least.begin() + x * kCells, least.begin() + (x + 1) * kCells);
     }
   });
   for (int y = 0; y < m_rows; ++y) {
@@ -74,8 +75,5 @@ bool HiddenTiles::hides(const SplatRun& run) const {
       if (!(m_farthest[static_cast<std::size_t>(y * m_columns + x)] < 0.9 * run.nearest)) return false;
   return true;
 }
-
-template void HiddenTiles::look(const SplatPlanes<std::uint32_t>&);
-template void HiddenTiles::look(const SplatPlanes<std::uint64_t>&);
 
 }  // namespace alidade

@@ -7,20 +7,21 @@
 
 #include <glm/glm.hpp>
 
+#include "raster/level_surface.h"
 #include "raster/splat_pass.h"
 
 namespace alidade {
 
 /// Behind which depth nothing more of a picture can be seen, by tiles of 8×8 pixels: what the nearest runs have drawn hides most
-/// of the others, which then need not be drawn. Holes that MergedRows closes hide as well. Taken from a whole part of
+/// of the others, which then need not be drawn. Taken from the surfaces of level 1 and above, whose holes are closed, of a whole part of
 /// the runs at a time, not as the threads go, so that the picture does not depend on who drew first.
 class HiddenTiles {
  public:
+  static constexpr int kSize = 8;
   HiddenTiles(int width, int height);
 
-  /// Takes what the planes have now, on all cores.
-  template <class Pixel>
-  void look(const SplatPlanes<Pixel>& planes);
+  /// `surface`: of level 1.
+  void look(const LevelSurface& surface);
 
   /// Metres, by tile: the farthest that can be seen in it and in the eight around it; +inf where something is bare.
   const float* farthest() const { return m_farthest.data(); }

@@ -64,10 +64,11 @@ DotImage drawDots(const std::vector<SplatLayer>& layers, const Camera& camera,
     }
   }
   DotImage dots(camera.width(), camera.height());
-  const auto merge = [&](const SplatPlanes<std::uint64_t>& planes, int first, int last) {
-    MergedRows<std::uint64_t> rows(planes, camera.width(), camera.height(), false);
+  const auto merge = [&](const SplatPlanes<std::uint64_t>& planes, const SplatLevels&, const LevelSurface*, int first, int last) {
+    const auto width = static_cast<std::size_t>(camera.width());
+    std::vector<std::uint64_t> joined;
     for (int y = first; y < last; ++y) {
-      const std::uint64_t* pixels = rows.row(y);
+      const std::uint64_t* pixels = nearestPixels(planes, static_cast<std::size_t>(y) * width, width, joined);
       for (int x = 0; x < camera.width(); ++x) {
         const float z = std::bit_cast<float>(static_cast<std::uint32_t>(pixels[x] >> 32));
         if (!(z > 0.0f)) continue;

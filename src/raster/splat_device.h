@@ -17,11 +17,10 @@ class SplatDevice {
  public:
   virtual ~SplatDevice() = default;
 
-  /// Draws the runs, whose views are of one camera and need no domain check, into width × height pixels as
+  /// Draws the runs, whose views are of one camera and need no domain check, into the pixels of all levels as
   /// SplatTarget has them: depths of 32 bits for SplatPayload::None, 64-bit pixels for Index and Colour.
   /// Divides whatever reciprocal is asked for. The pixels stay valid until the next call.
-  virtual Result<const void*> draw(std::span<const SplatRun* const> runs, int width, int height,
-                                   SplatPayload payload) = 0;
+  virtual Result<const void*> draw(std::span<const SplatRun* const> runs, const SplatLevels& levels, SplatPayload payload) = 0;
 };
 
 }  // namespace alidade

@@ -135,7 +135,7 @@ ALIDADE_LENS_INLINE void drawSideBySide(const SplatView& view, const Projected& 
       }
       const Ints at = y * view.width + x;
       const Words bits = reinterpret_cast<Words>(depth);
-      queue.add(queue.candidates(at, bits, lanesOf(inside)), at, bits, payload);
+      queue.add(lanesOf(inside), at, bits, payload);
     }
   }
 }
@@ -213,16 +213,6 @@ ALIDADE_LENS_INLINE void drawRows(const SplatView& view, const Projected& p, con
   }
 }
 
-/// Footprints all of which lie behind what the tiles around them show; those that reach farther are not looked up.
-ALIDADE_LENS_INLINE Ints isHidden(const SplatView& view, const Projected& p, const Floats& size, const SplatTarget& target) {
-  const Floats right = Floats{} + static_cast<float>(view.width - 1), bottom = Floats{} + static_cast<float>(view.height - 1);
-  const Floats u = p.u < right ? p.u : right, v = p.v < bottom ? p.v : bottom;
-  const Ints column = __builtin_convertvector(u > 0.0f ? u : Floats{}, Ints) >> kHiddenTileLog2;
-  const Ints row = __builtin_convertvector(v > 0.0f ? v : Floats{}, Ints) >> kHiddenTileLog2;
-  const Floats h = halfWidthOf(view, size);
-  return (p.z * (1.0f - h * (h + 1.0f)) > gatherFloats(target.farthest, row * target.tileColumns + column)) & (size <= 14.0f);
-}
-
 template <LensKind kind, bool packed>
 ALIDADE_LENS_INLINE void drawFootprints(const SplatView& view, const Projected& p, PixelQueue<packed>& queue,
                                         const SplatTarget& target, std::uint32_t place) {
@@ -233,9 +223,8 @@ ALIDADE_LENS_INLINE void drawFootprints(const SplatView& view, const Projected& 
   const Floats atMost = wanted < view.largest ? wanted : (zero + view.largest);
   const Floats size = atMost > view.smallest ? atMost : (zero + view.smallest);
   const Floats half = 0.5f * size;
-  Ints reaches = p.valid & (p.u + half > -0.5f) & (p.u - half < view.width - 0.5f) &
+  const Ints reaches = p.valid & (p.u + half > -0.5f) & (p.u - half < view.width - 0.5f) &
                        (p.v + half > -0.5f) & (p.v - half < view.height - 0.5f);
-  if (target.farthest) reaches &= ~isHidden(view, p, size, target);
   if (lanesOf(reaches) == 0) return;
   Footprints f;
   f.flat = ~Ints{};

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "raster/mesh_kernel.h"
+#include "raster/surface_kernel.h"
 
 namespace alidade {
 
@@ -51,6 +52,15 @@ const MeshKernel& meshKernel() {
   if (kernel == &kAvx2SplatKernel) return kAvx2MeshKernel;
 #endif
   return kScalarMeshKernel;
+}
+
+const SurfaceKernel& surfaceKernel() {
+#if defined(__x86_64__)
+  const SplatKernel* kernel = &splatKernel();
+  if (kernel == &kAvx512SplatKernel) return kAvx512SurfaceKernel;
+  if (kernel == &kAvx2SplatKernel) return kAvx2SurfaceKernel;
+#endif
+  return kScalarSurfaceKernel;
 }
 
 }  // namespace alidade

@@ -7,6 +7,7 @@
 
 #include "camera/lens_kernel.h"
 #include "raster/reciprocal.h"
+#include "raster/splat_levels.h"
 
 namespace alidade {
 
@@ -32,6 +33,8 @@ struct SplatView {
   const float* cellNormals;
   std::int32_t cellLow[3], cellShift;
   bool onePixel;  ///< every footprint is one pixel
+  /// Where points fall into cells as wide as sizeTimesDepth / z pixels or wider by less than an octave; null: they are footprints.
+  const SplatLevels* levels;
   bool round;
   Reciprocal reciprocal;
   float twoOverR, overRSquared;          ///< of MultiplyAdd
@@ -55,7 +58,7 @@ struct PlaceInPixel {
         v((static_cast<float>(payload & 63) - 31.5f) / 64.0f) {}
 };
 
-/// One thread's pixels, width × height. Depth is a positive float's bits, which order
+/// One thread's pixels, width × height, or all levels'. Depth is a positive float's bits, which order
 /// as unsigned integers do; in 64-bit pixels it stands above the payload, so that the nearest wins
 /// and equal depths are settled by the payload, whatever the order of drawing.
 struct SplatTarget {
@@ -63,13 +66,7 @@ struct SplatTarget {
   std::uint64_t* packed = nullptr;  ///< the others
   SplatPayload payload = SplatPayload::None;
   std::uint32_t payloadBase = 0;
-  /// Metres, by tile of 8×8 pixels: the farthest that can be seen in it and in the eight around it (see
-  /// raster/hidden_tiles.h); null: nothing is known to be hidden.
-  const float* farthest = nullptr;
-  int tileColumns = 0;
 };
-
-inline constexpr int kHiddenTileLog2 = 3;
 
 struct SplatKernel {
   const char* name;

@@ -170,17 +170,22 @@ ALIDADE_LENS_INLINE Words placeInPixel(const Floats& u, const Floats& v, const I
 #include "raster/splat_queue.h"
 
 #include "raster/splat_footprint.h"
+#include "raster/splat_level_kernel.h"
 
 namespace alidade {
 namespace {
 
-template <LensKind kind, bool packed, bool onePixel>
+enum class Dots { OnePixel, Levels, Footprints };
+
+template <LensKind kind, bool packed, Dots dots>
 void drawRun(const SplatView& view, const std::uint16_t* points, std::uint32_t count,
              const SplatTarget& target) {
   PixelQueue<packed> queue(target);
   const auto drawLanes = [&](const Projected& p, std::uint32_t place) __attribute__((always_inline)) {
-    if constexpr (onePixel) {
+    if constexpr (dots == Dots::OnePixel) {
       drawPixels<packed>(view, p, queue, target, place);
+    } else if constexpr (dots == Dots::Levels) {
+      drawLevels<packed>(view, p, queue, target, place);
     } else {
       drawFootprints<kind, packed>(view, p, queue, target, place);
     }
@@ -198,14 +203,17 @@ void drawRun(const SplatView& view, const std::uint16_t* points, std::uint32_t c
   drawLanes(p, place);
 }
 
+template <LensKind kind, bool packed>
+void drawDots(const SplatView& view, const std::uint16_t* points, std::uint32_t count, const SplatTarget& target) {
+  if (view.onePixel) return drawRun<kind, packed, Dots::OnePixel>(view, points, count, target);
+  if (view.levels) return drawRun<kind, packed, Dots::Levels>(view, points, count, target);
+  drawRun<kind, packed, Dots::Footprints>(view, points, count, target);
+}
+
 template <LensKind kind>
 void drawKind(const SplatView& view, const std::uint16_t* points, std::uint32_t count,
               const SplatTarget& target) {
-  if (target.payload == SplatPayload::None) {
-    (view.onePixel ? drawRun<kind, false, true> : drawRun<kind, false, false>)(view, points, count, target);
-  } else {
-    (view.onePixel ? drawRun<kind, true, true> : drawRun<kind, true, false>)(view, points, count, target);
-  }
+  (target.payload == SplatPayload::None ? drawDots<kind, false> : drawDots<kind, true>)(view, points, count, target);
 }
 
 void draw(const SplatView& view, const std::uint16_t* points, std::uint32_t count,

@@ -31,6 +31,9 @@ constexpr std::size_t kAlignment = kHugePage;
 /// so they are wider by this; one pixel as long as that is how far apart they are (closeHoles fills in).
 constexpr double kCover = 1.5;
 constexpr std::uint32_t kPointsPerTask = 16384;
+/// Cells are at least so many times as wide as points are apart. Those of the spacing that the selection wants by default, a pixel,
+/// fall into pixels, though levels are cut in steps.
+constexpr double kCellCover = 0.98;
 /// What is hidden is looked up when the nearest share of the wide points is drawn, then each time that they are some times as many.
 constexpr std::uint64_t kNearestShare = 8, kMoreBeforeNext = 3, kFewToHide = 300'000;
 constexpr std::size_t kRowsPerBand = 64;
@@ -137,7 +140,7 @@ class SurfaceFits {
 };
 
 /// The device's plane; null where there is none or it failed.
-const void* drawOnDevice(SplatDevice* device, std::span<const SplatRun> runs, SurfaceFits& fits, int width, int height,
+const void* drawOnDevice(SplatDevice* device, std::span<const SplatRun> runs, SurfaceFits& fits, const SplatLevels& levels,
                          SplatPayload payload) {
   if (!device) return nullptr;
   std::vector<const SplatRun*> unchecked;
@@ -145,7 +148,7 @@ const void* drawOnDevice(SplatDevice* device, std::span<const SplatRun> runs, Su
   for (std::uint32_t r = 0; r < runs.size(); ++r)
     if (!runs[r].view.checkDomain) unchecked.push_back(&runs[r]), numbers.push_back(r);
   fits.lay(numbers);
-  auto plane = device->draw(unchecked, width, height, payload);
+  auto plane = device->draw(unchecked, levels, payload);
   if (plane) return *plane;
   logWarning("The processor draws the points: " + plane.error().text());
   return nullptr;
@@ -166,24 +169,41 @@ std::vector<std::size_t> looksOf(std::span<const SplatRun> runs, const std::vect
   return looks;
 }
 
+/// As many as the widest of the points need, and one above that closes the holes of theirs.
+int levelsFor(std::span<const SplatRun> runs) {
+  double widest = 1.0;
+  for (const SplatRun& run : runs)
+    if (!run.view.onePixel) widest = std::max(widest, std::min<double>(run.view.largest, run.nearest > 0 ? run.view.sizeTimesDepth / run.nearest : run.view.largest));
+  return std::min(SplatLevels::kMost, 2 + static_cast<int>(std::ceil(std::log2(widest))));
+}
+
 /// Draws one frame's runs into one plane a thread.
 template <class Pixel>
 class PlaneDrawer {
  public:
   PlaneDrawer(std::span<SplatRun> runs, int width, int height, const SplatDrawing& drawing)
-      : m_runs(runs), m_width(width), m_height(height), m_payload(drawing.payload), m_closeHoles(drawing.closeHoles),
-        m_fits(runs, drawing.onSurface), m_scratch(static_cast<std::size_t>(workerCount())) {}
+      : m_runs(runs), m_payload(drawing.payload), m_closeHoles(drawing.closeHoles), m_levels(width, height, drawing.intoLevels ? levelsFor(runs) : 1),
+        m_fits(runs, drawing.intoLevels ? nullptr : drawing.onSurface), m_scratch(static_cast<std::size_t>(workerCount())) {
+    if (drawing.intoLevels)
+      for (SplatRun& run : runs) run.view.levels = &m_levels;
+  }
+
+  const SplatLevels& levels() const { return m_levels; }
+  std::optional<LevelSurface> coarse(const SplatPlanes<Pixel>& all) const {
+    return coarseSurface(all, m_levels, m_closeHoles, 1, surfacePayloadOf(m_payload));
+  }
 
   SplatPlanes<Pixel> draw(SplatDevice* device) {
-    m_onDevice = static_cast<const Pixel*>(drawOnDevice(device, m_runs, m_fits, m_width, m_height, m_payload));
+    m_onDevice = static_cast<const Pixel*>(drawOnDevice(device, m_runs, m_fits, m_levels, m_payload));
     std::vector<Task> tasks = tasksOf(m_runs, m_onDevice != nullptr);
-    if (m_closeHoles) std::ranges::stable_sort(tasks, {}, [&](const Task& task) { return m_runs[task.run].nearest; });
+    if (m_levels.count > 1) std::ranges::stable_sort(tasks, {}, [&](const Task& task) { return m_runs[task.run].nearest; });
     std::size_t first = 0;
-    if (m_closeHoles) {
+    if (m_levels.count > 1) {
       for (const std::size_t look : looksOf(m_runs, tasks)) {
         drawTasks(std::span(tasks).subspan(first, look - first));
-        if (!m_hidden) m_hidden.emplace(m_width, m_height);
-        m_hidden->look(planes());
+        if (!m_hidden) m_hidden.emplace(m_levels.columns[0], m_levels.rows[0]);
+        // What level 0 has alone is not looked at.
+        m_hidden->look(*coarseSurface(planes(), m_levels, m_closeHoles, 2, SurfacePayload::None));
         first = look;
       }
     }
@@ -219,7 +239,7 @@ class PlaneDrawer {
   }
 
   SplatTarget targetOf(int worker) {
-    const std::size_t bytes = static_cast<std::size_t>(m_width) * m_height * sizeof(Pixel);
+    const std::size_t bytes = m_levels.pixels() * sizeof(Pixel);
     auto& block = m_scratch[static_cast<std::size_t>(worker)];
     if (!block) {
       block = std::make_unique<SplatScratch>(bytes);
@@ -232,7 +252,6 @@ class PlaneDrawer {
     } else {
       target.packed = static_cast<Pixel*>(block->data());
     }
-    if (m_hidden) target.farthest = m_hidden->farthest(), target.tileColumns = m_hidden->columns();
     return target;
   }
 
@@ -243,9 +262,9 @@ class PlaneDrawer {
   }
 
   std::span<SplatRun> m_runs;
-  int m_width, m_height;
   SplatPayload m_payload;
   bool m_closeHoles;
+  SplatLevels m_levels;
   SurfaceFits m_fits;
   std::vector<std::unique_ptr<SplatScratch>> m_scratch;
   const Pixel* m_onDevice = nullptr;
@@ -254,11 +273,12 @@ class PlaneDrawer {
 
 template <class Pixel>
 void drawPlanes(std::span<SplatRun> runs, int width, int height, const SplatDrawing& drawing, SplatDevice* device,
-                const std::function<void(const SplatPlanes<Pixel>&, int, int)>& merge) {
+                const MergeRows<Pixel>& merge) {
   PlaneDrawer<Pixel> drawer(runs, width, height, drawing);
   const SplatPlanes<Pixel> planes = drawer.draw(device);
+  const std::optional<LevelSurface> coarse = drawer.coarse(planes);
   parallelFor(static_cast<std::size_t>(height), kRowsPerBand, [&](std::size_t first, std::size_t last, int) {
-    merge(planes, static_cast<int>(first), static_cast<int>(last));
+    merge(planes, drawer.levels(), coarse ? &*coarse : nullptr, static_cast<int>(first), static_cast<int>(last));
   });
 }
 
@@ -391,6 +411,14 @@ SplatView baseView(const Camera& camera, const SplatOptions& options) {
   return view;
 }
 
+SurfacePayload surfacePayloadOf(SplatPayload payload) {
+  return payload == SplatPayload::None ? SurfacePayload::None : payload == SplatPayload::Colour ? SurfacePayload::Colour : SurfacePayload::Other;
+}
+
+bool usesLevels(const SplatOptions& options) {
+  return options.surface && !options.round && !(options.minimumSizePx > 1.0) && !options.fixedSize && !(options.worldSizeM > 0) && options.maximumSizePx > 1.0 && options.pointSize >= 1.0;
+}
+
 SplatRun makeRun(const PointStore& store, const SelectedRange& range, const RigidTransform& cameraFromWorld,
                  const SplatView& base, const SplatOptions& options) {
   const CloudNode& node = store.nodes()[range.node];
@@ -413,11 +441,12 @@ SplatRun makeRun(const PointStore& store, const SelectedRange& range, const Rigi
     chooseReciprocal(run.view, node.bounds, cameraFromWorld, options.reciprocalErrorPx);
   const double focal = std::sqrt(std::abs(static_cast<double>(base.fx) * base.fy));
   const bool isAutomatic = !options.fixedSize && !(options.worldSizeM > 0);
-  const double width = isAutomatic ? kCover * range.spacing : options.worldSizeM;
+  const bool intoLevels = usesLevels(options);
+  const double width = isAutomatic ? (intoLevels ? kCellCover : kCover) * range.spacing : options.worldSizeM;
   const double sizeTimesDepth = options.fixedSize ? 0.0 : options.pointSize * width * focal;
   run.spacing = isAutomatic ? range.spacing / node.step : 0.0;
   run.view.sizeTimesDepth = static_cast<float>(sizeTimesDepth);
-  run.view.sizeLess = isAutomatic ? static_cast<float>(kCover - 1.0) : 0.0f;
+  run.view.sizeLess = isAutomatic && !intoLevels ? static_cast<float>(kCover - 1.0) : 0.0f;
   const double nearest = nearestDepth(node.bounds, cameraFromWorld);
   run.nearest = nearest;
   run.boxMiddle = rotation * (node.bounds.centre() - cameraFromWorld.centre());
@@ -429,8 +458,7 @@ SplatRun makeRun(const PointStore& store, const SelectedRange& range, const Rigi
 
 void drawRuns(
     std::span<SplatRun> runs, int width, int height, const SplatDrawing& drawing,
-    const std::function<void(const SplatPlanes<std::uint32_t>&, int, int)>& mergeDepth,
-    const std::function<void(const SplatPlanes<std::uint64_t>&, int, int)>& mergePacked,
+    const MergeRows<std::uint32_t>& mergeDepth, const MergeRows<std::uint64_t>& mergePacked,
     SplatDevice* device) {
   if (drawing.payload == SplatPayload::None) {
     drawPlanes<std::uint32_t>(runs, width, height, drawing, device, mergeDepth);

@@ -12,6 +12,7 @@
 #include "camera/camera.h"
 #include "geometry/rigid_transform.h"
 #include "raster/cell_normals.h"
+#include "raster/level_surface.h"
 #include "raster/splat_device.h"
 #include "raster/splat_kernel.h"
 #include "raster/splatter.h"
@@ -46,12 +47,9 @@ struct SplatRun {
   SplatView view;
 };
 
-/// A part of the picture as the threads left it: pixel i of thread k is planes[k][i]. All ones where
-/// nothing was drawn.
+/// Makes rows [first, last) of the picture of what was drawn; `coarse`: the surface of level 1, null where there is none.
 template <class Pixel>
-struct SplatPlanes {
-  std::vector<const Pixel*> planes;
-};
+using MergeRows = std::function<void(const SplatPlanes<Pixel>& planes, const SplatLevels& levels, const LevelSurface* coarse, int first, int last)>;
 
 /// Smallest depth that a point of the box can have, metres; 0 where the box reaches the eye's plane.
 double nearestDepth(const Bounds& bounds, const RigidTransform& cameraFromWorld);
@@ -60,6 +58,11 @@ double nearestDepth(const Bounds& bounds, const RigidTransform& cameraFromWorld)
 /// the camera, which must outlive the drawing.
 SplatView baseView(const Camera& camera, const SplatOptions& options);
 
+SurfacePayload surfacePayloadOf(SplatPayload payload);
+
+/// Whether points of more than a pixel fall into levels; else they are footprints.
+bool usesLevels(const SplatOptions& options);
+
 /// The range's points, seen by the camera: the double sums of origin and pose done here.
 SplatRun makeRun(const PointStore& store, const SelectedRange& range, const RigidTransform& cameraFromWorld,
                  const SplatView& base, const SplatOptions& options);
@@ -67,20 +70,20 @@ SplatRun makeRun(const PointStore& store, const SelectedRange& range, const Rigi
 /// How a frame's runs are drawn.
 struct SplatDrawing {
   SplatPayload payload = SplatPayload::None;
-  /// Where holes will be closed, the processor leaves out what HiddenTiles finds hidden.
   bool closeHoles = false;
   /// Where footprints of more than a pixel lie in the surface, which is fitted to the runs that need it: the pose that these
   /// were made with. Null: they face the eye.
   const RigidTransform* onSurface = nullptr;
+  /// Points that are farther apart than a pixel fall into coarser levels, and what HiddenTiles finds hidden is left out.
+  bool intoLevels = false;
 };
 
-/// Draws the runs on all cores, one private plane a thread, then hands the planes to `merge` for
+/// Draws the runs on all cores, one private plane a thread, then has `merge` make the picture of them in
 /// bands of rows [first, last), on all cores too. payload None draws 32-bit pixels and calls the
 /// first; anything else 64-bit ones and the second. A device draws the runs that need no domain check.
 void drawRuns(
     std::span<SplatRun> runs, int width, int height, const SplatDrawing& drawing,
-    const std::function<void(const SplatPlanes<std::uint32_t>&, int, int)>& mergeDepth,
-    const std::function<void(const SplatPlanes<std::uint64_t>&, int, int)>& mergePacked,
+    const MergeRows<std::uint32_t>& mergeDepth, const MergeRows<std::uint64_t>& mergePacked,
     SplatDevice* device = nullptr);
 
 }  // namespace alidade

@@ -7,15 +7,8 @@
 #include <bit>
 #include <limits>
 
-#include "raster/splat_merge.h"
+#include "base/widest.h"
 #include "raster/splat_pass.h"
-
-// Loops of plain arithmetic, in the widest registers the processor has.
-#if defined(__x86_64__) && !defined(__SANITIZE_ADDRESS__)
-#define ALIDADE_WIDEST __attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default")))
-#else
-#define ALIDADE_WIDEST
-#endif
 
 namespace alidade {
 
@@ -51,21 +44,27 @@ inline std::uint32_t colourOf(std::uint32_t rgb565) {
 }
 static_assert(sizeof(Rgba8) == 4 && std::endian::native == std::endian::little);
 
+/// +inf where nothing is.
+ALIDADE_WIDEST void depthsOf(const float* inverse, std::size_t count, float* depth) {
+  for (std::size_t i = 0; i < count; ++i) depth[i] = 1.0f / inverse[i];
+}
+
+/// No colour where nothing is.
+ALIDADE_WIDEST void coloursOf(const float* inverse, const std::uint32_t* payload, std::size_t count, std::uint32_t* colour) {
+  for (std::size_t i = 0; i < count; ++i) colour[i] = inverse[i] > 0.0f ? payload[i] : 0u;
+}
+
 /// Takes what is nearer than the depth that is there.
-ALIDADE_WIDEST void takeColours(const std::uint64_t* pixels, std::size_t count, float* depth, std::uint32_t* colour) {
+ALIDADE_WIDEST void takeColours(const float* from, const std::uint32_t* colours, std::size_t count, float* depth, std::uint32_t* colour) {
   for (std::size_t i = 0; i < count; ++i) {
-    const auto z = std::bit_cast<float>(static_cast<std::uint32_t>(pixels[i] >> 32));  // all ones is a NaN
-    const bool nearer = z < depth[i];
-    depth[i] = nearer ? z : depth[i];
-    colour[i] = nearer ? colourOf(static_cast<std::uint32_t>(pixels[i])) : colour[i];
+    const bool nearer = from[i] < depth[i];
+    depth[i] = nearer ? from[i] : depth[i];
+    colour[i] = nearer ? colours[i] : colour[i];
   }
 }
 
-ALIDADE_WIDEST void takeDepths(const std::uint32_t* pixels, std::size_t count, float* depth) {
-  for (std::size_t i = 0; i < count; ++i) {
-    const auto z = std::bit_cast<float>(pixels[i]);
-    depth[i] = z < depth[i] ? z : depth[i];
-  }
+ALIDADE_WIDEST void takeDepths(const float* from, std::size_t count, float* depth) {
+  for (std::size_t i = 0; i < count; ++i) depth[i] = from[i] < depth[i] ? from[i] : depth[i];
 }
 
 /// Looks a group's point up again: for colour where ids were asked for as well.
@@ -127,35 +126,36 @@ void splatGroup(const std::vector<SplatLayer>& layers, const LayerGroup& group, 
   const int width = camera.width(), height = camera.height();
   const auto rowSize = static_cast<std::size_t>(width);
   const bool closeHoles = closesHoles(options);
-  const auto mergeDepth = [&](const SplatPlanes<std::uint32_t>& planes, int first, int last) {
-    MergedRows<std::uint32_t> rows(planes, width, height, closeHoles);
-    for (int y = first; y < last; ++y) {
-      if (isFirst) clearRow(images, y);
-      takeDepths(rows.row(y), rowSize, images.depth.row(y));
-    }
-  };
-  const auto takeIds = [&](const std::uint64_t* pixels, int y) {
+  const auto takeIds = [&](const float* from, const std::uint32_t* indices, int y) {
     float* depth = images.depth.row(y);
     for (int x = 0; x < width; ++x) {
-      const float z = std::bit_cast<float>(static_cast<std::uint32_t>(pixels[x] >> 32));
-      if (!(z < depth[x])) continue;  // all ones is a NaN
-      depth[x] = z;
-      const auto index = static_cast<std::uint32_t>(pixels[x]);
+      if (!(from[x] < depth[x])) continue;
+      depth[x] = from[x];
+      const std::uint32_t index = indices[x];
       images.point.at(x, y) = 1 + group.pointsBefore + index;
       if (options.colour) images.colour.at(x, y) = std::bit_cast<Rgba8>(colourOf(points.colour(index)));
     }
   };
-  const auto mergePacked = [&](const SplatPlanes<std::uint64_t>& planes, int first, int last) {
-    MergedRows<std::uint64_t> rows(planes, width, height, closeHoles);
+  const auto merge = [&](const auto& planes, const SplatLevels& levels, const LevelSurface* coarse, int first, int last) {
+    SurfaceRows rows(planes, levels, 0, closeHoles, surfacePayloadOf(payload), coarse);
+    std::vector<float> depth(rowSize);
     for (int y = first; y < last; ++y) {
-      const std::uint64_t* pixels = rows.row(y);
+      const SurfaceCells cells = rows.row(y);
+      auto* colours = options.colour ? reinterpret_cast<std::uint32_t*>(images.colour.row(y)) : nullptr;
+      if (isFirst && !options.ids) {
+        depthsOf(cells.inverse, rowSize, images.depth.row(y));
+        if (colours) coloursOf(cells.inverse, cells.payload, rowSize, colours);
+        continue;
+      }
+      depthsOf(cells.inverse, rowSize, depth.data());
       if (isFirst) clearRow(images, y);
-      if (options.ids) takeIds(pixels, y);
-      else takeColours(pixels, rowSize, images.depth.row(y), reinterpret_cast<std::uint32_t*>(images.colour.row(y)));
+      if (options.ids) takeIds(depth.data(), cells.payload, y);
+      else if (colours) takeColours(depth.data(), cells.payload, rowSize, images.depth.row(y), colours);
+      else takeDepths(depth.data(), rowSize, images.depth.row(y));
     }
   };
-  const SplatDrawing drawing{payload, closeHoles, options.planar && !options.fixedSize ? &cameraFromWorld : nullptr};
-  drawRuns(runs, width, height, drawing, mergeDepth, mergePacked, options.device);
+  const SplatDrawing drawing{payload, closeHoles, options.planar && !options.fixedSize ? &cameraFromWorld : nullptr, usesLevels(options)};
+  drawRuns(runs, width, height, drawing, merge, merge, options.device);
 }
 
 }  // namespace

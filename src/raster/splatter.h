@@ -40,6 +40,9 @@ struct SplatOptions {
   /// Pixels that the points of a surface missed are closed, see raster/splat_merge.h; not where points are drawn smaller
   /// than they are apart, at one pixel or at a fixed size.
   bool closeHoles = true;
+  /// Points that are drawn at least as wide as they are apart make a surface, put together from levels (see
+  /// raster/level_surface.h) and not of footprints.
+  bool surface = true;
   /// Every point this wide in the world, metres, before `pointSize`: Zhang (2020), whose s n r H / (z
   /// tan(fov/2)) is s w f / z with w = n r H / (f tan(fov/2)). 0: as wide as its neighbours are apart.
   double worldSizeM = 0;

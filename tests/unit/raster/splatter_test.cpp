@@ -226,7 +226,8 @@ TEST(Splatter, IdsNameTheWinnerOverAllLayers) {
 }
 
 /// One point in the middle of a 101 x 101 picture, f = 100, z = 2 m, spacing told to the splatter.
-SplatImages onePoint(const SplatOptions& options, double spacing) {
+SplatImages onePoint(SplatOptions options, double spacing) {
+  options.surface = false;
   PointBatch batch;
   batch.position = {{0, 0, 2}};
   const Camera lens = pinhole(101, 101, 100);

@@ -1,0 +1,252 @@
+// SPDX-FileCopyrightText: 2026 the Alidade authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "raster/level_surface.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "raster/splatter.h"
+#include "unit/raster/panel.h"
+
+namespace alidade {
+namespace {
+
+constexpr int kWidth = 37, kHeight = 29;
+
+/// A picture of pixels of colour x + 100 y at the depth that `depthAt` gives; not finite: nothing there.
+template <class DepthAt>
+std::vector<std::uint64_t> planeOf(DepthAt depthAt) {
+  std::vector<std::uint64_t> plane;
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      const float z = depthAt(x, y);
+      const auto payload = static_cast<std::uint32_t>(x + 100 * y);
+      plane.push_back(std::isfinite(z) ? std::uint64_t{std::bit_cast<std::uint32_t>(z)} << 32 | payload : ~std::uint64_t{0});
+    }
+  }
+  return plane;
+}
+
+struct Picture {
+  std::vector<float> depth;  ///< NaN where nothing is
+  std::vector<std::uint32_t> payload;
+  float at(int x, int y) const { return depth[static_cast<std::size_t>(y * kWidth + x)]; }
+};
+
+Picture merged(const std::vector<std::vector<std::uint64_t>>& planes, bool closeHoles, int rowsAtATime = kHeight) {
+  SplatPlanes<std::uint64_t> all;
+  for (const auto& plane : planes) all.planes.push_back(plane.data());
+  const SplatLevels levels(kWidth, kHeight, 1);
+  Picture picture;
+  for (int first = 0; first < kHeight; first += rowsAtATime) {
+    SurfaceRows<std::uint64_t> rows(all, levels, 0, closeHoles, SurfacePayload::Other, nullptr);
+    for (int y = first; y < std::min(first + rowsAtATime, kHeight); ++y) {
+      const SurfaceCells row = rows.row(y);
+      for (int x = 0; x < kWidth; ++x) {
+        picture.depth.push_back(row.inverse[x] > 0 ? 1.0f / row.inverse[x] : NAN);
+        picture.payload.push_back(row.payload[x]);
+      }
+    }
+  }
+  return picture;
+}
+
+/// A floor: 1/z falls evenly from row to row.
+float floorDepth(int, int y) {
+  return 1.0f / (0.05f + 0.0005f * static_cast<float>(y));
+}
+
+TEST(LevelSurface, NearestOfThePlanesWins) {
+  const Picture both = merged({planeOf([](int x, int) { return x % 2 == 0 ? 5.0f : 3.0f; }), planeOf([](int, int) { return 4.0f; })}, false);
+  for (int y = 0; y < kHeight; ++y)
+    for (int x = 0; x < kWidth; ++x) EXPECT_FLOAT_EQ(both.at(x, y), x % 2 == 0 ? 4.0f : 3.0f);
+}
+
+TEST(LevelSurface, HolesOfASurfaceAreClosedOnIt) {
+  std::mt19937 random(3);
+  std::uniform_int_distribution<int> kind(0, 9);
+  std::vector<int> holes;
+  for (int i = 0; i < kWidth * kHeight; ++i) holes.push_back(kind(random));
+  // A tenth is bare, a tenth shows a wall far behind.
+  const auto withHoles = planeOf([&](int x, int y) {
+    const int k = holes[static_cast<std::size_t>(y * kWidth + x)];
+    return k == 0 ? INFINITY : k == 1 ? 200.0f : floorDepth(x, y);
+  });
+  const Picture closed = merged({withHoles}, true);
+  std::size_t closedCount = 0;
+  for (int y = 2; y + 2 < kHeight; ++y) {
+    for (int x = 2; x + 2 < kWidth; ++x) {
+      const bool hole = holes[static_cast<std::size_t>(y * kWidth + x)] < 2;
+      const float z = closed.at(x, y);
+      if (!hole) {
+        EXPECT_FLOAT_EQ(z, floorDepth(x, y));
+      }
+      if (!hole || !(z < 100.0f)) continue;
+      ++closedCount;
+      EXPECT_NEAR(z, floorDepth(x, y), 0.04f * z);
+      const std::uint32_t from = closed.payload[static_cast<std::size_t>(y * kWidth + x)];
+      EXPECT_LE(std::abs(static_cast<int>(from % 100) - x) + std::abs(static_cast<int>(from / 100) - y), 2);
+      EXPECT_GE(holes[from / 100 * kWidth + from % 100], 2);
+    }
+  }
+  EXPECT_GT(closedCount, 100u);
+}
+
+TEST(LevelSurface, EdgesGapsAndTheSkyStayOpen) {
+  // Posts 2 pixels wide and 3 apart before a wall, its lower half; above it the sky.
+  const auto scene = [](int x, int y) {
+    if (y < 10) return INFINITY;
+    return x % 5 < 2 ? 4.0f : y < 20 ? INFINITY : 9.0f;
+  };
+  const Picture closed = merged({planeOf(scene)}, true);
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      if (std::isfinite(scene(x, y))) {
+        EXPECT_FLOAT_EQ(closed.at(x, y), scene(x, y));
+      } else {
+        EXPECT_TRUE(std::isnan(closed.at(x, y))) << x << ' ' << y;
+      }
+    }
+  }
+}
+
+TEST(LevelSurface, BandsGiveTheSamePicture) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<float> depth(1.0f, 20.0f);
+  const auto plane = planeOf([&](int, int) { return depth(random) < 8.0f ? INFINITY : depth(random); });
+  const Picture whole = merged({plane}, true), bands = merged({plane}, true, 3);
+  EXPECT_EQ(whole.payload, bands.payload);
+  for (std::size_t i = 0; i < whole.depth.size(); ++i)
+    EXPECT_EQ(std::bit_cast<std::uint32_t>(whole.depth[i]), std::bit_cast<std::uint32_t>(bands.depth[i]));
+}
+
+/// Points of a surface in colours of their own, over all levels.
+SplatImages drawn(const PointBatch& batch, const Camera& camera, const RigidTransform& pose, SplatOptions options = {.colour = true}) {
+  const auto store = test::storeFrom(batch);
+  return splat({{store, selectAll(*store, camera, pose)}}, camera, pose, options);
+}
+
+TEST(LevelSurface, IsTheFloorBetweenItsPoints) {
+  // 1.5 m below the eye, 2 to 12 m away, seen at 37 to 7 degrees: points 14 to 3 pixels apart.
+  const test::Panel floor{{-4, 2, 0}, {8, 0, 0}, {0, 10, 0}};
+  const auto pose = RigidTransform::cameraLookingAt({0, 0, 1.5}, {0, 10, 0.5});
+  for (const Camera& camera : {test::brown(), test::pinhole(640, 480, 420)}) {
+    const test::Score surface = scoreOf(floor, camera, pose, {}, 20'000),
+                      facing = scoreOf(floor, camera, pose, {.planar = false, .surface = false}, 20'000);
+    RecordProperty("surface_error_permille", std::to_string(1000 * surface.meanError));
+    RecordProperty("facing_error_permille", std::to_string(1000 * facing.meanError));
+    EXPECT_LT(surface.meanError, 0.4 * facing.meanError);
+    EXPECT_LT(surface.missing, 0.005);
+    EXPECT_LT(surface.fattened, 0.05);
+  }
+}
+
+TEST(LevelSurface, HidesAsAWholeWhatLiesBehindIt) {
+  // A wall of points 6 pixels apart before one of points that are less than a pixel apart.
+  const test::Panel near{{-2, 4, -1.5}, {4, 0, 0}, {0, 0, 3}}, far{{-8, 8, -6}, {16, 0, 0}, {0, 0, 12}};
+  PointBatch batch = near.points(4'000);
+  batch.rgb.assign(batch.position.size(), {250, 0, 0});
+  const PointBatch behind = far.points(800'000);
+  batch.position.insert(batch.position.end(), behind.position.begin(), behind.position.end());
+  batch.rgb.resize(batch.position.size(), {0, 0, 250});
+  const auto pose = RigidTransform::cameraLookingAt({0, 0, 0}, {0, 4, 0});
+  const Camera camera = test::pinhole(640, 480, 420);
+  // Two scans, so that no node holds points of both.
+  PointBatch front, back;
+  for (std::size_t i = 0; i < batch.position.size(); ++i) {
+    PointBatch& to = batch.rgb[i].r > 0 ? front : back;
+    to.position.push_back(batch.position[i]), to.rgb.push_back(batch.rgb[i]);
+  }
+  std::vector<SplatLayer> layers;
+  for (const PointBatch& one : {front, back}) {
+    const auto store = test::storeFrom(one);
+    layers.push_back({store, selectAll(*store, camera, pose)});
+  }
+  const SplatImages images = splat(layers, camera, pose, {.colour = true});
+  std::size_t seen = 0, through = 0, wrongColour = 0;
+  for (int y = 0; y < 480; ++y) {
+    for (int x = 0; x < 640; ++x) {
+      // Of the near wall, but for two points' distance along its border.
+      const bool isNear = std::abs(x - 319.5) < 210 - 12 && std::abs(y - 239.5) < 157 - 12;
+      if (!isNear) continue;
+      ++seen;
+      through += images.depth.at(x, y) > 4.5f;
+      wrongColour += images.colour.at(x, y).b > 20;
+    }
+  }
+  EXPECT_GT(seen, 100'000u);
+  EXPECT_EQ(through, 0u);
+  EXPECT_EQ(wrongColour, 0u);
+}
+
+TEST(LevelSurface, ALonePointIsSeen) {
+  PointBatch batch;
+  batch.position = {{0, 0, 2}};
+  batch.rgb = {{200, 100, 50}};
+  const Camera camera = test::pinhole(101, 101, 100);
+  const auto store = test::storeFrom(batch);
+  for (const double spacing : {0.001, 0.03, 0.1, 0.4}) {  // 0.05 to 20 pixels
+    SplatLayer layer{store, selectAll(*store, camera, {})};
+    layer.selection.ranges.at(0).spacing = spacing;
+    const SplatImages images = splat({layer}, camera, {}, {.colour = true});
+    int covered = 0;
+    for (std::size_t i = 0; i < images.depth.size(); ++i) covered += std::isfinite(images.depth.data()[i]);
+    EXPECT_NEAR(images.depth.at(50, 50), 2.0f, 1e-3f) << spacing;
+    EXPECT_NEAR(images.colour.at(50, 50).r, 200, 8);
+    const double side = std::exp2(std::ceil(std::log2(std::max(1.0, 50 * spacing))));
+    EXPECT_LE(covered, static_cast<int>(side * side)) << spacing;
+    EXPECT_GE(covered, static_cast<int>(0.5 * side * side)) << spacing;  // its corners are rounded off
+  }
+}
+
+TEST(LevelSurface, ColoursAreBlendedAndIdsAreNot) {
+  // Left half black, right half white, points 8 pixels apart.
+  const test::Panel board{{-2, 4, -1.5}, {4, 0, 0}, {0, 0, 3}};
+  PointBatch batch = board.points(2'500);
+  for (const glm::dvec3& p : batch.position) batch.rgb.push_back(p.x < 0 ? glm::u8vec3(0) : glm::u8vec3(255));
+  const auto pose = RigidTransform::cameraLookingAt({0, 0, 0}, {0, 4, 0});
+  const Camera camera = test::pinhole(640, 480, 420);
+  const SplatImages images = drawn(batch, camera, pose), withIds = drawn(batch, camera, pose, {.colour = true, .ids = true});
+  std::size_t between = 0;
+  for (int y = 120; y < 360; ++y) {
+    for (int x = 150; x < 490; ++x) {
+      const int shade = images.colour.at(x, y).r;
+      between += shade > 20 && shade < 235;
+      if (x < 300 || x > 340) {
+        EXPECT_NEAR(shade, x < 320 ? 0 : 255, 2);
+      }
+      EXPECT_EQ(images.colour.at(x, y).a, 255);
+      ASSERT_GT(withIds.point.at(x, y), 0u);
+      ASSERT_LE(withIds.point.at(x, y), batch.position.size());
+      const int chosen = withIds.colour.at(x, y).r;
+      EXPECT_TRUE(chosen == 0 || chosen == 255);
+      EXPECT_NEAR(withIds.depth.at(x, y), images.depth.at(x, y), 1e-4);
+    }
+  }
+  EXPECT_GT(between, 500u);
+}
+
+TEST(LevelSurface, IsClosedWhereTheScanIsSparser) {
+  // The right half holds an eighth of the left one's points, at random, in nodes that hold both.
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  PointBatch batch;
+  for (int i = 0; i < 20'000; ++i) {
+    const double x = -2 + 4 * unit(random);
+    if (x < 0 || i % 8 == 0) batch.position.push_back({x, 4, -1.5 + 3 * unit(random)});
+  }
+  const auto pose = RigidTransform::cameraLookingAt({0, 0, 0}, {0, 4, 0});
+  const SplatImages images = drawn(batch, test::pinhole(640, 480, 420), pose, {});
+  std::size_t bare = 0;
+  for (int y = 120; y < 360; ++y)
+    for (int x = 340; x < 500; ++x) bare += std::isinf(images.depth.at(x, y));
+  EXPECT_LT(bare, 240 * 160 / 5);  // footprints that face the eye leave three fifths
+}
+
+}  // namespace
+}  // namespace alidade
