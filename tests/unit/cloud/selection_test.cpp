@@ -108,7 +108,7 @@ TEST(Selection, DensityZeroDrawsNothingAndOneTheWantedDensity) {
 }
 
 TEST(Selection, ReachesTheWantedSpacingOnScreen) {
-  // A wall 10 m away, points 2 mm apart: 0.14 px at f = 700; wanted 0.75 px, so 1 in 29 is drawn.
+  // A wall 10 m away, points 2 mm apart: 0.14 px at f = 700; wanted is a pixel, so 1 in 51 is drawn.
   PointBatch batch;
   std::mt19937 random(2);
   std::uniform_real_distribution<double> side(-1.0, 1.0);
@@ -118,10 +118,10 @@ TEST(Selection, ReachesTheWantedSpacingOnScreen) {
   const Selection selection =
       select(*store, camera, RigidTransform::cameraLookingAt({0, 0, 0}, {0, 10, 0}), {});
   const double pixels = 140.0 * 140.0;
-  EXPECT_NEAR(selection.pointCount * 0.75 * 0.75 / pixels, 1.0, 0.15);
+  EXPECT_NEAR(static_cast<double>(selection.pointCount) / pixels, 1.0, 0.15);
   for (const SelectedRange& range : selection.ranges) {
     if (range.count > 500) {
-      EXPECT_NEAR(range.spacing * 70, 0.75, 0.12);
+      EXPECT_NEAR(range.spacing * 70, 1.0, 0.15);
     }
   }
 }
