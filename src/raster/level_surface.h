@@ -38,8 +38,8 @@ struct LevelSurface {
 };
 
 /// A level's cells, row by row: the nearest of the threads' planes; where there is none, or one that lies behind, what the coarser
-/// surface has there, linear between its cells. A point of the level is seen if it lies before the farthest of the four coarser
-/// cells around it: a surface shows its finer dots, and nothing shows through it. Then holes are closed, where asked, as
+/// surface has there, linear between its cells. A point of the level is seen if it does not lie behind the farthest of the four coarser
+/// cells around it: a surface shows its finer dots, and nothing shows through it, be it the other side of a wall. Then holes are closed, where asked, as
 /// SurfaceKernel::closeHoles says; what reaches beyond two cells on any side stays open: edges, gaps between posts, the sky.
 ///
 /// Pixel: 32 bits of depth, or 64 with a payload below. Rows may be asked for from any thread, each with an object of its own.

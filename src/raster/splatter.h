@@ -27,8 +27,8 @@ class SplatDevice;
 struct SplatOptions {
   bool colour = false;     ///< fill SplatImages::colour
   bool ids = false;        ///< fill SplatImages::point
-  /// User's factor on the automatic footprint, which is as wide as it takes to close the surface: 1.5 s - 0.5 pixels where
-  /// points are s pixels apart, at least one.
+  /// User's factor on the automatic size: cells of a level at least as wide as points are apart, or footprints as wide as it takes to
+  /// close the surface, 1.5 s - 0.5 pixels where points are s pixels apart, at least one.
   double pointSize = 1.0;
   double minimumSizePx = 1.0;
   double maximumSizePx = 32.0;
@@ -37,11 +37,11 @@ struct SplatOptions {
   /// footprint, foreshortened along it. Otherwise, and for fixedSize, they face the eye at their point's
   /// depth.
   bool planar = true;
-  /// Pixels that the points of a surface missed are closed, see raster/splat_merge.h; not where points are drawn smaller
+  /// Pixels that the points of a surface missed are closed, see raster/level_surface.h; not where points are drawn smaller
   /// than they are apart, at one pixel or at a fixed size.
   bool closeHoles = true;
   /// Points that are drawn at least as wide as they are apart make a surface, put together from levels (see
-  /// raster/level_surface.h) and not of footprints.
+  /// raster/level_surface.h) and not of footprints; but for round ones, and those of a fixed size or of one in the world.
   bool surface = true;
   /// Every point this wide in the world, metres, before `pointSize`: Zhang (2020), whose s n r H / (z
   /// tan(fov/2)) is s w f / z with w = n r H / (f tan(fov/2)). 0: as wide as its neighbours are apart.

@@ -33,14 +33,14 @@ struct SurfaceKernel {
   void (*takeNearer)(const SurfaceCells& a, const SurfaceCells& b, std::size_t count, const SurfaceRow& row);
 
   /// A row of the next finer level takes the coarser surface where it has nothing, or something that lies behind the farthest of the four
-  /// coarser cells about it. Two cells of the row, from its first on, lie in each of `own`, in its half towards the row `across`. They
+  /// coarser cells about it by more than the scan's noise and their slope explain. Two cells of the row, from its first on, lie in each of `own`, in its half towards the row `across`. They
   /// take three quarters of the nearer cell and one of the farther along each axis, but for cells of another surface, which count
   /// as the cell itself; nothing at the corners of a staircase, where the three about a quarter have nothing and the cell
   /// opposite has something. Cells beside both ends are read. Payloads are blended byte by byte, or the cell's own.
   void (*takeCoarser)(const SurfaceCells& own, const SurfaceCells& across, bool blends, std::size_t count, const SurfaceRow& row);
 
   /// Closes the holes of `own`, the middle one of five rows, which are read two cells beyond both ends: where a cell has nothing, or
-  /// something behind, and nearer ones lie within two cells on each of its four sides. It takes the inverse depth between two that
+  /// something likewise behind, and nearer ones lie within two cells on each of its four sides. It takes the inverse depth between two that
   /// face each other, those that differ least, and the payload of the nearer to it; between two surfaces those of the farther
   /// one. The rows may have more than `own` has; what the middle one has more is taken only where it is so surrounded.
   void (*closeHoles)(const SurfaceCells (&rows)[5], const SurfaceCells& own, std::size_t count, const SurfaceRow& closed);

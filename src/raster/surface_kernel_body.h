@@ -42,8 +42,10 @@ typedef std::uint32_t Words __attribute__((vector_size(4 * kLanes)));
 
 /// Neighbouring cells of a coarse surface whose inverse depths differ by less, as a part, are of one surface.
 constexpr float kOneSurface = 0.1f;
-/// Neighbouring cells' depths that differ by less are of one surface; points may lie so much behind a coarser surface,
-/// whose cells have their nearest point's depth.
+/// A point is of the surface around it if it lies no farther behind its farthest cell than by this part, for the scan's noise, and by
+/// half of what the cells differ, for their slope: the other side of a thin wall lies farther.
+constexpr float kNoise = 1.005f, kSlope = 0.5f;
+/// Neighbouring cells' depths that differ by less are of one surface.
 constexpr float kBehind = 1.03f;
 
 ALIDADE_SURFACE_INLINE Floats load(const float* from) {
@@ -85,6 +87,11 @@ ALIDADE_SURFACE_INLINE Floats smaller(const Floats& a, const Floats& b) {
 }
 ALIDADE_SURFACE_INLINE Floats larger(const Floats& a, const Floats& b) {
   return a > b ? a : b;
+}
+
+/// Inverse depth of the farthest point that is of a surface whose cells lie between `least` and `most`.
+ALIDADE_SURFACE_INLINE Floats leastOf(const Floats& least, const Floats& most) {
+  return (least - kSlope * (most - least)) * (1.0f / kNoise);
 }
 
 void takeDepths(const std::uint32_t* pixels, std::size_t count, float* inverse) {
@@ -159,7 +166,8 @@ ALIDADE_SURFACE_INLINE Words blended(const Words& own, const Words& beside, cons
 }
 
 struct Quarter {
-  Floats inverse, least;
+  Floats inverse;
+  Floats least;  ///< of the points that are of the surface there
   Words payload;
 };
 
@@ -172,7 +180,7 @@ ALIDADE_SURFACE_INLINE Quarter quarterOf(const SurfaceCells& ownRow, const Surfa
   Quarter quarter{};
   const Ints isCorner = ((b + c) + d == 0.0f) & (load(ownRow.inverse + opposite) > 0.0f);
   quarter.inverse = isCorner ? Floats{} : between;
-  quarter.least = smaller(smaller(a, b), smaller(c, d));
+  quarter.least = leastOf(smaller(smaller(a, b), smaller(c, d)), larger(larger(a, b), larger(c, d)));
   if constexpr (hasPayload) {
     const Words own = load(ownRow.payload + at);
     quarter.payload = own;
@@ -187,7 +195,7 @@ ALIDADE_SURFACE_INLINE Quarter quarterOf(const SurfaceCells& ownRow, const Surfa
 template <bool hasPayload>
 ALIDADE_SURFACE_INLINE void takeBehind(const Floats& coarser, const Floats& least, const Words& payload, std::size_t at, const SurfaceRow& row) {
   const Floats own = load(row.inverse + at);
-  const Ints isSeen = (own > 0.0f) & (kBehind * own >= least);
+  const Ints isSeen = (own > 0.0f) & (own >= least);
   store(Floats(isSeen ? own : coarser), row.inverse + at);
   if constexpr (hasPayload) store(Words(isSeen ? load(row.payload + at) : payload), row.payload + at);
 }
@@ -229,8 +237,8 @@ void closeHolesOf(const SurfaceCells (&rows)[5], const SurfaceCells& ownRow, std
     const Floats own = load(ownRow.inverse + i), here = load(middle.inverse + i);
     const Floats acrossLeast = smaller(left.inverse, right.inverse), alongLeast = smaller(up.inverse, down.inverse);
     const Floats acrossMost = larger(left.inverse, right.inverse), alongMost = larger(up.inverse, down.inverse);
-    const Floats around = smaller(acrossLeast, alongLeast);
-    const Ints isHole = kBehind * own < around, isHere = kBehind * here >= around;
+    const Floats around = leastOf(smaller(acrossLeast, alongLeast), larger(acrossMost, alongMost));
+    const Ints isHole = own < around, isHere = here >= around;
     if (!anyOf(isHole)) {
       store(own, closed.inverse + i);
       if constexpr (hasPayload) store(load(ownRow.payload + i), closed.payload + i);
