@@ -39,8 +39,12 @@ void drawPixel(vec2 at, float z, uint payload) {
   put(uint(pixel.y) * frame.x + uint(pixel.x), z, payload);
 }
 
-void drawIntoLevel(int level, ivec2 pixel, float z, uint payload) {
+void drawIntoLevel(int level, ivec2 pixel, vec2 at, float z, uint payload) {
   ivec4 of = levels[level];
+  if (frame.z == 1u) {  // PlaceInCell of src/raster/splat_levels.h
+    ivec2 place = ivec2((at - vec2(pixel - (pixel & ((1 << level) - 1)))) * float(256 >> level)) & 255;
+    payload |= uint(place.x | place.y << 8) << 16;
+  }
   ivec2 cell = (pixel >> level) + of.w;
   if (all(greaterThanEqual(cell, ivec2(0))) && all(lessThan(cell, of.xy))) put(uint(cell.y * of.x + cell.x + of.z), z, payload);
 }
@@ -51,8 +55,8 @@ void drawLevels(Run run, vec2 at, float z, uint payload) {
   int level = clamp(((floatBitsToInt(width) - 1) >> 23) - 126, 0, int(fold.y));
   // Far outside of any level, where an int might not hold it.
   ivec2 pixel = ivec2(clamp(floor(at + 0.5), vec2(-1e6), vec2(1e6)));
-  drawIntoLevel(level, pixel, z, payload);
-  if (level > 0) drawIntoLevel(level - 1, pixel, z, payload);
+  drawIntoLevel(level, pixel, at + 0.5, z, payload);
+  if (level > 0) drawIntoLevel(level - 1, pixel, at + 0.5, z, payload);
 }
 
 // How many times its inverse depth a footprint gains along u and along v, a pixel; false where it is of one depth.

@@ -44,6 +44,28 @@ SurfaceRows<Pixel>::SurfaceRows(const SplatPlanes<Pixel>& planes, const SplatLev
   if (finer)
     for (Row& row : m_withFiner) row.fit(m_columns, hasPayload);
   m_closed.fit(m_columns, hasPayload);
+  if (level > 0 && kind == SurfacePayload::Colour)
+    for (Row& row : m_fallen) row.fit(m_columns, true);
+}
+
+/// Points lie anywhere in their cells, and the nearest of a cell on the near side of it: on a slope all would come out too near.
+template <class Pixel>
+void SurfaceRows<Pixel>::takeAtMiddles(int y, const SurfaceRow& row) {
+  const auto fallen = [&](int number) -> Row& { return m_fallen[(number + 3) % 3]; };
+  if (m_nextFallen < 0) m_nextFallen = y - 1;
+  for (; m_nextFallen <= y + 1; ++m_nextFallen) {
+    const SurfaceRow to = fallen(m_nextFallen).row();
+    if (m_nextFallen < 0 || m_nextFallen >= m_height) {
+      std::fill_n(to.inverse, m_columns, 0.0f);
+      continue;
+    }
+    const Pixel* pixels = nearestPixels(m_planes, m_start + static_cast<std::size_t>(m_nextFallen) * m_columns, m_columns, m_joined);
+    if constexpr (sizeof(Pixel) == 8) {
+      surfaceKernel().takePixels(pixels, m_columns, {to.inverse, nullptr});
+      surfaceKernel().takePlaces(pixels, m_columns, to.payload);
+    }
+  }
+  surfaceKernel().toMiddles({fallen(y - 1).cells(), fallen(y).cells(), fallen(y + 1).cells()}, m_columns, row.inverse);
 }
 
 /// Cell c of this level lies in the coarser one's cell c >> 1, its even half towards the cell before.
@@ -76,6 +98,7 @@ void SurfaceRows<Pixel>::join(int y) {
   } else {
     kernel.takeDepths(pixels, m_columns, row.row().inverse);
   }
+  if (m_margin > 0 && m_kind == SurfacePayload::Colour) takeAtMiddles(y, row.row());
   if (m_coarser) takeCoarser(y, row.row());
   row.clearBorders(m_columns);
   if (!m_finer) return;

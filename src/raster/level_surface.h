@@ -71,6 +71,7 @@ class SurfaceRows {
   using Rows = Row[kRows];
   static Row& at(Rows& rows, int y) { return rows[(y + kRows) % kRows]; }
   void join(int y);
+  void takeAtMiddles(int y, const SurfaceRow& row);
   void takeCoarser(int y, const SurfaceRow& row);
 
   const SplatPlanes<Pixel>& m_planes;
@@ -84,6 +85,9 @@ class SurfaceRows {
   Rows m_rows, m_withFiner;
   Row m_closed;
   std::vector<Pixel> m_joined;
+  /// Of a coarser level with colours: inverse depths where the points fell, and their places in their cells, of three rows.
+  Row m_fallen[3];
+  int m_nextFallen = -1;
 };
 
 /// The surface of level 1 with all above it; nothing if there is level 0 alone. Where holes are closed, points of the levels from

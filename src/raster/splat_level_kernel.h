@@ -28,27 +28,37 @@ ALIDADE_LENS_INLINE Ints levelOf(const Floats& width, int count) {
 
 template <bool packed>
 ALIDADE_LENS_INLINE void drawIntoLevel(const SplatLevels& levels, const Ints& level, const Ints& column, const Ints& row, Lanes drawn,
-                                       const Words& depth, const Words& payload, PixelQueue<packed>& queue) {
+                                       const Words& depth, const Words& payload, const Floats& u, const Floats& v, bool hasPlaces, PixelQueue<packed>& queue) {
   const Ints margin = level > 0 ? Ints{} + SplatLevels::kMargin : Ints{};
   const Ints x = (column >> level) + margin, y = (row >> level) + margin;
   const Ints columns = lookUp(levels.columns, level), rows = lookUp(levels.rows, level);
   const Ints inside = (reinterpret_cast<Words>(x) < reinterpret_cast<Words>(columns)) & (reinterpret_cast<Words>(y) < reinterpret_cast<Words>(rows));
   const Ints at = y * columns + x + lookUp(levels.start, level);
-  queue.add(drawn & lanesOf(inside), at, depth, payload);
+  Words carried = payload;
+  if (packed && hasPlaces) {
+    // 256 / 2^level, by its exponent; of level 0 nothing is read.
+    const Floats steps = reinterpret_cast<Floats>((127 + 8 - level) << 23);
+    const Ints inU = __builtin_convertvector((u - __builtin_convertvector(column - (column & ((1 << level) - 1)), Floats)) * steps, Ints);
+    const Ints inV = __builtin_convertvector((v - __builtin_convertvector(row - (row & ((1 << level) - 1)), Floats)) * steps, Ints);
+    carried |= reinterpret_cast<Words>(((inU & 255) | (inV & 255) << 8) << PlaceInCell::kColourBits);
+  }
+  queue.add(drawn & lanesOf(inside), at, depth, carried);
 }
 
 template <bool packed>
 ALIDADE_LENS_INLINE void drawLevels(const SplatView& view, const Projected& p, PixelQueue<packed>& queue,
                                     const SplatTarget& target, std::uint32_t place) {
-  const Ints column = floorOf(p.u + 0.5f), row = floorOf(p.v + 0.5f);
+  const Floats u = p.u + 0.5f, v = p.v + 0.5f;
+  const Ints column = floorOf(u), row = floorOf(v);
   const Lanes valid = lanesOf(p.valid);
   if (valid == 0) return;
   const Ints level = levelOf(view.sizeTimesDepth * p.inverse, view.levels->count);
   const Words depth = reinterpret_cast<Words>(p.z);
   const Words payload = payloadOf(target, place, p.colour);
-  drawIntoLevel<packed>(*view.levels, level, column, row, valid, depth, payload, queue);
+  const bool hasPlaces = target.payload == SplatPayload::Colour;
+  drawIntoLevel<packed>(*view.levels, level, column, row, valid, depth, payload, u, v, hasPlaces, queue);
   const Lanes coarse = valid & lanesOf(level > 0);
-  if (coarse != 0) drawIntoLevel<packed>(*view.levels, level > 0 ? level - 1 : Ints{}, column, row, coarse, depth, payload, queue);
+  if (coarse != 0) drawIntoLevel<packed>(*view.levels, level > 0 ? level - 1 : Ints{}, column, row, coarse, depth, payload, u, v, hasPlaces, queue);
 }
 
 }  // namespace

@@ -38,4 +38,10 @@ struct SplatLevels {
   static std::int32_t cells(int pixels, int k) { return k == 0 ? pixels : ((pixels + (1 << k) - 1) >> k) + 2 * kMargin; }
 };
 
+/// Cells from a cell's middle to the point that its pixel carries beside a colour: 8 bits each of u and v.
+struct PlaceInCell {
+  static constexpr int kColourBits = 16;
+  static constexpr float kSteps = 256.0f;
+};
+
 }  // namespace alidade

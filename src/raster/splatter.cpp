@@ -120,9 +120,10 @@ void splatGroup(const std::vector<SplatLayer>& layers, const LayerGroup& group, 
                 const RigidTransform& cameraFromWorld, const SplatOptions& options, bool isFirst, SplatImages& images) {
   std::vector<SplatRun> runs = runsOf(layers, group, camera, cameraFromWorld, options);
   const GroupPoints points(layers, group);
-  const SplatPayload payload = options.ids      ? SplatPayload::Index
-                               : options.colour ? SplatPayload::Colour
-                                                : SplatPayload::None;
+  // Surfaces of levels are truer with the places that colours carry.
+  const SplatPayload payload = options.ids                              ? SplatPayload::Index
+                               : options.colour || usesLevels(options) ? SplatPayload::Colour
+                                                                        : SplatPayload::None;
   const int width = camera.width(), height = camera.height();
   const auto rowSize = static_cast<std::size_t>(width);
   const bool closeHoles = closesHoles(options);

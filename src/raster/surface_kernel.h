@@ -28,6 +28,11 @@ struct SurfaceKernel {
   void (*takePixels)(const std::uint64_t* pixels, std::size_t count, const SurfaceRow& row);
   void (*takeColours)(const std::uint64_t* pixels, std::size_t count, const SurfaceRow& row);
 
+  /// Moves the inverse depths of the middle one of three rows from where their points fell, as PlaceInCell tells below pixels that
+  /// were taken by takePlaces, to the middles of their cells: along the lesser of the slopes to the cells on either side.
+  void (*takePlaces)(const std::uint64_t* pixels, std::size_t count, std::uint32_t* places);
+  void (*toMiddles)(const SurfaceCells (&rows)[3], std::size_t count, float* inverse);
+
   /// Cell i takes the nearest of itself and of the finer cells 2i and 2i + 1.
   void (*pull)(const SurfaceCells& finer, std::size_t count, const SurfaceRow& row);
   void (*takeNearer)(const SurfaceCells& a, const SurfaceCells& b, std::size_t count, const SurfaceRow& row);

@@ -8,7 +8,7 @@
 
 namespace alidade {
 
-const SurfaceKernel kAvx512SurfaceKernel{takeDepths, takePixels, takeColours, pull, takeNearer, takeCoarser, closeHoles};
+const SurfaceKernel kAvx512SurfaceKernel{takeDepths, takePixels, takeColours, takePlaces, toMiddles, pull, takeNearer, takeCoarser, closeHoles};
 
 }  // namespace alidade
 

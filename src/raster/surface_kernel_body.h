@@ -11,6 +11,7 @@
 #include <immintrin.h>
 #endif
 
+#include "raster/splat_levels.h"
 #include "raster/surface_kernel.h"
 
 #define ALIDADE_SURFACE_INLINE inline __attribute__((always_inline))
@@ -42,6 +43,8 @@ typedef std::uint32_t Words __attribute__((vector_size(4 * kLanes)));
 
 /// Neighbouring cells of a coarse surface whose inverse depths differ by less, as a part, are of one surface.
 constexpr float kOneSurface = 0.1f;
+/// By so much a slope that is seen at a grazing angle may change from cell to cell.
+constexpr float kSteepest = 0.3f;
 /// A point is of the surface around it if it lies no farther behind its farthest cell than by this part, for the scan's noise, and by
 /// half of what the cells differ, for their slope: the other side of a thin wall lies farther.
 constexpr float kNoise = 1.005f, kSlope = 0.5f;
@@ -123,6 +126,46 @@ void takeColours(const std::uint64_t* pixels, std::size_t count, const SurfaceRo
   }
 }
 
+/// Which neighbours are of a cell's surface.
+ALIDADE_SURFACE_INLINE Ints isLike(const Floats& own, const Floats& other) {
+  return larger(own, other) - smaller(own, other) <= kOneSurface * own;
+}
+
+void takePlaces(const std::uint64_t* pixels, std::size_t count, std::uint32_t* places) {
+  for (std::size_t i = 0; i < count; ++i) places[i] = static_cast<std::uint32_t>(pixels[i]) >> PlaceInCell::kColourBits;
+}
+
+/// Cells from the middle.
+ALIDADE_SURFACE_INLINE Floats placeOf(const Words& places, int axis) {
+  return (__builtin_convertvector(Ints(places >> (8 * axis) & 255u), Floats) + 0.5f) * (1.0f / PlaceInCell::kSteps) - 0.5f;
+}
+
+/// Along one axis to the neighbour on one side of it, -1 or 1 cells away; 0 where that is bare or of another surface.
+ALIDADE_SURFACE_INLINE Floats slopeTo(const Floats& own, const Floats& place, const float* inverse, const std::uint32_t* places, int axis, float side) {
+  const Floats other = load(inverse);
+  const Floats apart = 1.0f + side * (placeOf(load(places), axis) - place);
+  const Floats least = Floats{} + 0.25f;  // two points side by side tell no slope
+  const Floats slope = side * (other - own) / (apart > least ? apart : least);
+  return larger(own, other) - smaller(own, other) <= kSteepest * own ? slope : Floats{};
+}
+
+ALIDADE_SURFACE_INLINE Floats lesserSlope(const Floats& a, const Floats& b) {
+  const Ints isRising = (a > 0.0f) & (b > 0.0f), isFalling = (a < 0.0f) & (b < 0.0f);
+  return isRising ? smaller(a, b) : isFalling ? larger(a, b) : Floats{};
+}
+
+void toMiddles(const SurfaceCells (&rows)[3], std::size_t count, float* inverse) {
+  const SurfaceCells &above = rows[0], &middle = rows[1], &below = rows[2];
+  for (std::size_t i = 0; i < count; i += kLanes) {
+    const Floats own = load(middle.inverse + i);
+    const Words places = load(middle.payload + i);
+    const Floats u = placeOf(places, 0), v = placeOf(places, 1);
+    const Floats alongU = lesserSlope(slopeTo(own, u, middle.inverse + i - 1, middle.payload + i - 1, 0, -1.0f), slopeTo(own, u, middle.inverse + i + 1, middle.payload + i + 1, 0, 1.0f));
+    const Floats alongV = lesserSlope(slopeTo(own, v, above.inverse + i, above.payload + i, 1, -1.0f), slopeTo(own, v, below.inverse + i, below.payload + i, 1, 1.0f));
+    store(Floats(own - (alongU * u + alongV * v)), inverse + i);
+  }
+}
+
 template <bool hasPayload>
 void pullCells(const SurfaceCells& finer, std::size_t count, const SurfaceRow& row) {
   for (std::size_t i = 0; i < count; i += kLanes) {
@@ -152,11 +195,6 @@ void takeNearer(const SurfaceCells& a, const SurfaceCells& b, std::size_t count,
     store(Floats(isSecond ? second : first), row.inverse + i);
     if (row.payload) store(Words(isSecond ? load(b.payload + i) : load(a.payload + i)), row.payload + i);
   }
-}
-
-/// Which of a quarter's neighbours are of its cell's surface.
-ALIDADE_SURFACE_INLINE Ints isLike(const Floats& own, const Floats& other) {
-  return larger(own, other) - smaller(own, other) <= kOneSurface * own;
 }
 
 ALIDADE_SURFACE_INLINE Words blended(const Words& own, const Words& beside, const Words& across, const Words& corner) {

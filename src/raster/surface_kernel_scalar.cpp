@@ -6,6 +6,6 @@
 
 namespace alidade {
 
-const SurfaceKernel kScalarSurfaceKernel{takeDepths, takePixels, takeColours, pull, takeNearer, takeCoarser, closeHoles};
+const SurfaceKernel kScalarSurfaceKernel{takeDepths, takePixels, takeColours, takePlaces, toMiddles, pull, takeNearer, takeCoarser, closeHoles};
 
 }  // namespace alidade

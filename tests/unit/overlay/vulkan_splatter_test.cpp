@@ -82,7 +82,9 @@ void expectTwins(const SplatImages& cpu, const SplatImages& gpu, const SplatOpti
     wrong += sameWinner && !sameColour;
   }
   ASSERT_GT(covered, 20'000u) << what;
-  EXPECT_LE(border, 5e-4 * static_cast<double>(covered)) << what;
+  // In levels a point carries its place in its cell in steps of 1/256: one that lies on a step may get either.
+  const bool hasPlaces = isWide && !options.ids;
+  EXPECT_LE(border, (hasPlaces ? 2e-3 : 5e-4) * static_cast<double>(covered)) << what;
   EXPECT_LE(otherWinner, (isWide ? 0.06 : 5e-4) * static_cast<double>(covered)) << what;
   EXPECT_EQ(wrong, 0u) << what;
   const auto percent = [&](std::size_t n) {

@@ -140,7 +140,8 @@ TEST(LevelSurface, IsTheFloorBetweenItsPoints) {
                       facing = scoreOf(floor, camera, pose, {.planar = false, .surface = false}, 20'000);
     RecordProperty("surface_error_permille", std::to_string(1000 * surface.meanError));
     RecordProperty("facing_error_permille", std::to_string(1000 * facing.meanError));
-    EXPECT_LT(surface.meanError, 0.4 * facing.meanError);
+    EXPECT_LT(surface.meanError, 0.003);
+    EXPECT_GT(facing.meanError, 0.02);
     EXPECT_LT(surface.missing, 0.005);
     EXPECT_LT(surface.fattened, 0.05);
   }
