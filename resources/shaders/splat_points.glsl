@@ -42,7 +42,7 @@ void drawPixel(vec2 at, float z, uint payload) {
 void drawIntoLevel(int level, ivec2 pixel, vec2 at, float z, uint payload) {
   ivec4 of = levels[level];
   if (frame.z == 1u) {  // PlaceInCell of src/raster/splat_levels.h
-    ivec2 place = ivec2((at - vec2(pixel - (pixel & ((1 << level) - 1)))) * float(256 >> level)) & 255;
+    ivec2 place = clamp(ivec2((at - vec2(pixel - (pixel & ((1 << level) - 1)))) * float(256 >> level)), ivec2(0), ivec2(255, 254));
     payload |= uint(place.x | place.y << 8) << 16;
   }
   ivec2 cell = (pixel >> level) + of.w;
@@ -51,10 +51,10 @@ void drawIntoLevel(int level, ivec2 pixel, vec2 at, float z, uint payload) {
 
 // A cell at least as wide as the points are apart, and its detail in the next finer level.
 void drawLevels(Run run, vec2 at, float z, uint payload) {
-  precise float width = run.size.x * (1.0 / z);
+  precise float width = min(run.size.x * (1.0 / z), run.size.z);
   int level = clamp(((floatBitsToInt(width) - 1) >> 23) - 126, 0, int(fold.y));
-  // Far outside of any level, where an int might not hold it.
-  ivec2 pixel = ivec2(clamp(floor(at + 0.5), vec2(-1e6), vec2(1e6)));
+  if (!(abs(at.x) < 1e6 && abs(at.y) < 1e6)) return;  // outside of any level, or no number
+  ivec2 pixel = ivec2(floor(at + 0.5));
   drawIntoLevel(level, pixel, at + 0.5, z, payload);
   if (level > 0) drawIntoLevel(level - 1, pixel, at + 0.5, z, payload);
 }

@@ -21,7 +21,7 @@ constexpr double kLargestPx = 600.0;
 }  // namespace
 
 HiddenTiles::HiddenTiles(int width, int height)
-    : m_width(width), m_height(height), m_columns((width + kSize - 1) / kSize), m_rows((height + kSize - 1) / kSize),
+    : m_columns((width + kSize - 1) / kSize), m_rows((height + kSize - 1) / kSize),
       m_own(static_cast<std::size_t>(m_columns) * m_rows), m_farthest(m_own.size()) {}
 
 void HiddenTiles::look(const LevelSurface& surface) {
@@ -65,7 +65,8 @@ bool HiddenTiles::hides(const SplatRun& run) const {
   if (!(reach < kLargestPx)) return false;
   // A straight edge bends by no more than that of a circle as wide as the focal length.
   const double bulge = reach * reach / (8.0 * std::min(std::abs(camera.intrinsics().fx), std::abs(camera.intrinsics().fy)));
-  const double size = std::clamp<double>(run.view.sizeTimesDepth / run.nearest, run.view.smallest, run.view.largest);
+  // A cell is less than twice as wide as its points want it.
+  const double size = 2.0 * std::clamp<double>(run.view.sizeTimesDepth / run.nearest, run.view.smallest, run.view.largest);
   const double margin = std::max(0.0, bulge + size - kSize);  // the tiles around a tile are looked at in any case
   const auto tileOf = [](double pixel, int count) { return static_cast<int>(std::clamp(std::floor((pixel + 0.5) / kSize), 0.0, count - 1.0)); };
   const int left = tileOf(low.x - margin, m_columns), right = tileOf(high.x + margin, m_columns);

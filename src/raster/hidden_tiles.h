@@ -31,7 +31,7 @@ class HiddenTiles {
   bool hides(const SplatRun& run) const;
 
  private:
-  int m_width, m_height, m_columns, m_rows;
+  int m_columns, m_rows;
   std::vector<float> m_own, m_farthest;
 };
 

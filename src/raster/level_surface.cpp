@@ -125,15 +125,17 @@ namespace {
 template <class Pixel>
 LevelSurface pulledUp(const SplatPlanes<Pixel>& planes, const SplatLevels& levels, int level, SurfacePayload kind) {
   const int finer = level - 1, columns = levels.columns[level];
+  // On either side: level 0 has no margin that would lie in this one's.
+  const int bare = finer == 0 ? SplatLevels::kMargin : 1;
   LevelSurface surface(columns, levels.rows[level], kind != SurfacePayload::None);
   parallelFor(static_cast<std::size_t>(levels.rows[level]), kRowsPerBand, [&](std::size_t first, std::size_t last, int) {
     SurfaceRows<Pixel> rows(planes, levels, finer, false, kind, nullptr);
     for (auto y = static_cast<int>(first); y < static_cast<int>(last); ++y) {
       const SurfaceRow row = surface.row(y);
       std::fill_n(row.inverse, columns, 0.0f);
-      for (int from = std::max(0, 2 * y - 2); from < std::min(2 * y, levels.rows[finer]); ++from)
-        surfaceKernel().pull(rows.row(from), static_cast<std::size_t>(columns - 2), {row.inverse + 1, row.payload ? row.payload + 1 : nullptr});
-      row.inverse[columns - 1] = 0.0f;
+      for (int from = std::max(0, 2 * (y - bare)); from < std::min(2 * (y - bare) + 2, levels.rows[finer]); ++from)
+        surfaceKernel().pull(rows.row(from), static_cast<std::size_t>(columns - 2 * bare), {row.inverse + bare, row.payload ? row.payload + bare : nullptr});
+      std::fill_n(row.inverse + columns - bare, bare, 0.0f);
     }
   });
   return surface;

@@ -20,7 +20,7 @@ namespace alidade {
 
 /// What of 64-bit pixels is taken beside their depth.
 enum class SurfacePayload {
-  None,    ///< nothing, as of 32-bit pixels
+  None,    ///< nothing, as there is nothing in 32-bit pixels
   Colour,  ///< RGB565, in a surface 8-bit RGBA that is blended between a coarser level's cells
   Other,   ///< 32 bits that are not to be mixed
 };
@@ -37,7 +37,8 @@ struct LevelSurface {
   SurfaceCells cells(int y) const { return {inverse.row(y), payload.empty() ? nullptr : payload.row(y)}; }
 };
 
-/// A level's cells, row by row: the nearest of the threads' planes; where there is none, or one that lies behind, what the coarser
+/// A level's cells, row by row: the nearest of the threads' planes, with colours moved along the surface from where its point fell to the
+/// middle of its cell; where there is none, or one that lies behind, what the coarser
 /// surface has there, linear between its cells. A point of the level is seen if it does not lie behind the farthest of the four coarser
 /// cells around it: a surface shows its finer dots, and nothing shows through it, be it the other side of a wall. Then holes are closed, where asked, as
 /// SurfaceKernel::closeHoles says; what reaches beyond two cells on any side stays open: edges, gaps between posts, the sky.

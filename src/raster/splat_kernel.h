@@ -45,7 +45,7 @@ struct SplatView {
 enum class SplatPayload {
   None,    ///< 32-bit pixels: depth alone
   Index,   ///< payloadBase + the point's place in the run
-  Colour,  ///< the point's RGB565; in coarser levels, above it, where in the cell the point fell, as PlaceInCell reads it
+  Colour,  ///< the point's RGB565; above it, of points that fall into levels, PlaceInCell
   Place,   ///< payloadBase + where in the pixel the point fell, as PlaceInPixel reads it
 };
 

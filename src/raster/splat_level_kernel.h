@@ -40,7 +40,9 @@ ALIDADE_LENS_INLINE void drawIntoLevel(const SplatLevels& levels, const Ints& le
     const Floats steps = reinterpret_cast<Floats>((127 + 8 - level) << 23);
     const Ints inU = __builtin_convertvector((u - __builtin_convertvector(column - (column & ((1 << level) - 1)), Floats)) * steps, Ints);
     const Ints inV = __builtin_convertvector((v - __builtin_convertvector(row - (row & ((1 << level) - 1)), Floats)) * steps, Ints);
-    carried |= reinterpret_cast<Words>(((inU & 255) | (inV & 255) << 8) << PlaceInCell::kColourBits);
+    // A coordinate may round to the cell's far border. Never all ones: that is an empty payload.
+    const Ints placeU = inU < 255 ? inU : Ints{} + 255, placeV = inV < 254 ? inV : Ints{} + 254;
+    carried |= reinterpret_cast<Words>(((placeU & 255) | (placeV & 255) << 8) << PlaceInCell::kColourBits);
   }
   queue.add(drawn & lanesOf(inside), at, depth, carried);
 }
@@ -52,7 +54,8 @@ ALIDADE_LENS_INLINE void drawLevels(const SplatView& view, const Projected& p, P
   const Ints column = floorOf(u), row = floorOf(v);
   const Lanes valid = lanesOf(p.valid);
   if (valid == 0) return;
-  const Ints level = levelOf(view.sizeTimesDepth * p.inverse, view.levels->count);
+  const Floats wanted = view.sizeTimesDepth * p.inverse;
+  const Ints level = levelOf(wanted < view.largest ? wanted : Floats{} + view.largest, view.levels->count);
   const Words depth = reinterpret_cast<Words>(p.z);
   const Words payload = payloadOf(target, place, p.colour);
   const bool hasPlaces = target.payload == SplatPayload::Colour;

@@ -1,7 +1,8 @@
 // SPDX-FileCopyrightText: 2026 the Alidade authors
 // SPDX-License-Identifier: BSD-3-Clause
 
-// Points of one pixel, included by splat_kernel_body.h.
+// Points of one pixel, and the queue before the pixels for them, for dots in levels and for small footprints; included by
+// splat_kernel_body.h.
 //
 // In a dense cloud most points lose against what is drawn already, and neighbours in a node fall on the same few pixels, so that
 // load, compare and store a point make one long chain through memory. Here points first wait in a queue. When it is full, gathers tell

@@ -26,7 +26,7 @@ class SplatDevice;
 
 struct SplatOptions {
   bool colour = false;     ///< fill SplatImages::colour
-  bool ids = false;        ///< fill SplatImages::point
+  bool ids = false;        ///< fill SplatImages::point; surfaces' depths are then those of their cells' nearest points, a little too near on slopes
   /// User's factor on the automatic size: cells of a level at least as wide as points are apart, or footprints as wide as it takes to
   /// close the surface, 1.5 s - 0.5 pixels where points are s pixels apart, at least one.
   double pointSize = 1.0;

@@ -275,8 +275,9 @@ void closeHolesOf(const SurfaceCells (&rows)[5], const SurfaceCells& ownRow, std
     const Floats own = load(ownRow.inverse + i), here = load(middle.inverse + i);
     const Floats acrossLeast = smaller(left.inverse, right.inverse), alongLeast = smaller(up.inverse, down.inverse);
     const Floats acrossMost = larger(left.inverse, right.inverse), alongMost = larger(up.inverse, down.inverse);
-    const Floats around = leastOf(smaller(acrossLeast, alongLeast), larger(acrossMost, alongMost));
-    const Ints isHole = own < around, isHere = here >= around;
+    const Floats farthest = smaller(acrossLeast, alongLeast);
+    const Floats around = leastOf(farthest, larger(acrossMost, alongMost));
+    const Ints isHole = (own < around) | ((own == 0.0f) & (farthest > 0.0f)), isHere = (here > 0.0f) & (here >= around);
     if (!anyOf(isHole)) {
       store(own, closed.inverse + i);
       if constexpr (hasPayload) store(load(ownRow.payload + i), closed.payload + i);

@@ -249,5 +249,40 @@ TEST(LevelSurface, IsClosedWhereTheScanIsSparser) {
   EXPECT_LT(bare, 240 * 160 / 5);  // footprints that face the eye leave three fifths
 }
 
+TEST(LevelSurface, PointsArePulledUpIntoTheCellsThatTheyLieIn) {
+  // A lone row and column of dots of level 0 would not do: pixels apart by three, which level 1 closes.
+  const SplatLevels levels(64, 48, 2);
+  std::vector<std::uint32_t> plane(levels.pixels(), ~std::uint32_t{0});
+  for (int y = 12; y < 36; y += 3)
+    for (int x = 20; x < 44; x += 3) plane[static_cast<std::size_t>(y * 64 + x)] = std::bit_cast<std::uint32_t>(4.0f);
+  SplatPlanes<std::uint32_t> planes;
+  planes.planes.push_back(plane.data());
+  const auto surface = coarseSurface(planes, levels, true, 1, SurfacePayload::None);
+  int left = 1000, right = -1, top = 1000, bottom = -1;
+  for (int y = 0; y < levels.rows[1]; ++y) {
+    for (int x = 0; x < levels.columns[1]; ++x) {
+      if (!(surface->inverse.at(x, y) > 0)) continue;
+      EXPECT_FLOAT_EQ(surface->inverse.at(x, y), 0.25f);
+      left = std::min(left, x), right = std::max(right, x), top = std::min(top, y), bottom = std::max(bottom, y);
+    }
+  }
+  // Dots from (20, 12) to (41, 33) lie in cells (10, 6) to (20, 16); those at the border are surrounded on three sides alone.
+  const int margin = SplatLevels::kMargin;
+  EXPECT_GE(left, 10 + margin);
+  EXPECT_LE(left, 12 + margin);
+  EXPECT_LE(right, 20 + margin);
+  EXPECT_GE(right, 18 + margin);
+  EXPECT_GE(top, 6 + margin);
+  EXPECT_LE(top, 8 + margin);
+  EXPECT_LE(bottom, 16 + margin);
+  EXPECT_GE(bottom, 14 + margin);
+}
+
+TEST(LevelSurface, HolesBetweenFarAndNearAreClosedByTheFarther) {
+  // A lone bare pixel whose right neighbours are five times nearer than the others.
+  const auto plane = planeOf([](int x, int y) { return x == 18 && y == 14 ? INFINITY : x > 18 ? 2.0f : 10.0f; });
+  EXPECT_FLOAT_EQ(merged({plane}, true).at(18, 14), 10.0f);
+}
+
 }  // namespace
 }  // namespace alidade
