@@ -41,7 +41,7 @@ void drawPixel(vec2 at, float z, uint payload) {
 
 void drawIntoLevel(int level, ivec2 pixel, vec2 at, float z, uint payload) {
   ivec4 of = levels[level];
-  if (frame.z == 1u) {  // PlaceInCell of src/raster/splat_levels.h
+  if (frame.z == 1u && level > 0) {  // PlaceInCell of src/raster/splat_levels.h
     ivec2 place = clamp(ivec2((at - vec2(pixel - (pixel & ((1 << level) - 1)))) * float(256 >> level)), ivec2(0), ivec2(255, 254));
     payload |= uint(place.x | place.y << 8) << 16;
   }

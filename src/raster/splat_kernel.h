@@ -45,7 +45,7 @@ struct SplatView {
 enum class SplatPayload {
   None,    ///< 32-bit pixels: depth alone
   Index,   ///< payloadBase + the point's place in the run
-  Colour,  ///< the point's RGB565; above it, of points that fall into levels, PlaceInCell
+  Colour,  ///< the point's RGB565; above it, in coarser levels, PlaceInCell
   Place,   ///< payloadBase + where in the pixel the point fell, as PlaceInPixel reads it
 };
 

@@ -35,14 +35,15 @@ ALIDADE_LENS_INLINE void drawIntoLevel(const SplatLevels& levels, const Ints& le
   const Ints inside = (reinterpret_cast<Words>(x) < reinterpret_cast<Words>(columns)) & (reinterpret_cast<Words>(y) < reinterpret_cast<Words>(rows));
   const Ints at = y * columns + x + lookUp(levels.start, level);
   Words carried = payload;
-  if (packed && hasPlaces) {
-    // 256 / 2^level, by its exponent; of level 0 nothing is read.
+  const Ints isCoarse = level > 0;
+  if (packed && hasPlaces && lanesOf(isCoarse) != 0) {
+    // 256 / 2^level, by its exponent.
     const Floats steps = reinterpret_cast<Floats>((127 + 8 - level) << 23);
     const Ints inU = __builtin_convertvector((u - __builtin_convertvector(column - (column & ((1 << level) - 1)), Floats)) * steps, Ints);
     const Ints inV = __builtin_convertvector((v - __builtin_convertvector(row - (row & ((1 << level) - 1)), Floats)) * steps, Ints);
     // A coordinate may round to the cell's far border. Never all ones: that is an empty payload.
     const Ints placeU = inU < 255 ? inU : Ints{} + 255, placeV = inV < 254 ? inV : Ints{} + 254;
-    carried |= reinterpret_cast<Words>(((placeU & 255) | (placeV & 255) << 8) << PlaceInCell::kColourBits);
+    carried |= reinterpret_cast<Words>(isCoarse & ((placeU & 255) | (placeV & 255) << 8) << PlaceInCell::kColourBits);
   }
   queue.add(drawn & lanesOf(inside), at, depth, carried);
 }

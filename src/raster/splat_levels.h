@@ -38,8 +38,8 @@ struct SplatLevels {
   static std::int32_t cells(int pixels, int k) { return k == 0 ? pixels : ((pixels + (1 << k) - 1) >> k) + 2 * kMargin; }
 };
 
-/// Where in its cell the point fell that a pixel carries above its colour: 8 bits each of u and v from the cell's first corner on. Of
-/// level 0 it means nothing.
+/// Where in its cell the point fell that a pixel carries above its colour: 8 bits each of u and v from the cell's first corner on. None
+/// in level 0.
 struct PlaceInCell {
   static constexpr int kColourBits = 16;
   static constexpr float kSteps = 256.0f;
