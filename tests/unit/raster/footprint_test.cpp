@@ -70,18 +70,10 @@ TEST(Footprints, OfASurfaceThatFacesTheEyeAreTheSame) {
   EXPECT_LT(with.meanError, 1e-4);
 }
 
-/// A board whose right half holds an eighth of the left one's points, at random, in nodes that hold both.
 TEST(Footprints, AreWiderWhereTheScanIsSparser) {
-  std::mt19937 random(5);
-  std::uniform_real_distribution<double> unit(0.0, 1.0);
-  PointBatch batch;
-  for (int i = 0; i < 20'000; ++i) {
-    const double x = -2 + 4 * unit(random);
-    if (x < 0 || i % 8 == 0) batch.position.push_back({x, 4, -1.5 + 3 * unit(random)});
-  }
   const auto pose = RigidTransform::cameraLookingAt({0, 0, 0}, {0, 4, 0});
   const Camera camera = test::pinhole(640, 480, 420);
-  const auto store = storeFrom(batch);
+  const auto store = storeFrom(test::boardWithASparserHalf());
   const std::vector<SplatLayer> layers{{store, selectAll(*store, camera, pose)}};
   const auto bareOf = [&](const SplatImages& images) {
     std::size_t bare = 0;

@@ -233,16 +233,8 @@ TEST(LevelSurface, ColoursAreBlendedAndIdsAreNot) {
 }
 
 TEST(LevelSurface, IsClosedWhereTheScanIsSparser) {
-  // The right half holds an eighth of the left one's points, at random, in nodes that hold both.
-  std::mt19937 random(5);
-  std::uniform_real_distribution<double> unit(0.0, 1.0);
-  PointBatch batch;
-  for (int i = 0; i < 20'000; ++i) {
-    const double x = -2 + 4 * unit(random);
-    if (x < 0 || i % 8 == 0) batch.position.push_back({x, 4, -1.5 + 3 * unit(random)});
-  }
   const auto pose = RigidTransform::cameraLookingAt({0, 0, 0}, {0, 4, 0});
-  const SplatImages images = drawn(batch, test::pinhole(640, 480, 420), pose, {});
+  const SplatImages images = drawn(test::boardWithASparserHalf(), test::pinhole(640, 480, 420), pose, {});
   std::size_t bare = 0;
   for (int y = 120; y < 360; ++y)
     for (int x = 340; x < 500; ++x) bare += std::isinf(images.depth.at(x, y));

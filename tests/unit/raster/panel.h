@@ -70,4 +70,16 @@ inline Camera brown() {
                                             {420, 420, 318.2, 241.7, -0.21, 0.06, 0.001, -0.002, -0.01}));
 }
 
+/// A board 4 m away whose right half holds an eighth of the left one's points, at random: 4 m × 3 m, in nodes that hold both.
+inline PointBatch boardWithASparserHalf() {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  PointBatch batch;
+  for (int i = 0; i < 20'000; ++i) {
+    const double x = -2 + 4 * unit(random);
+    if (x < 0 || i % 8 == 0) batch.position.push_back({x, 4, -1.5 + 3 * unit(random)});
+  }
+  return batch;
+}
+
 }  // namespace alidade::test
