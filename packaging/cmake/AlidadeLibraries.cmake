@@ -22,6 +22,7 @@ find_package(PNG REQUIRED)
 find_package(CURL REQUIRED)
 find_package(PROJ REQUIRED)
 find_package(pugixml REQUIRED)
+find_package(hwy REQUIRED)
 
 # Never GUISupportQt: Debian's is built on Qt 5.
 find_package(VTK 9.1 REQUIRED COMPONENTS

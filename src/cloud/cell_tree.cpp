@@ -14,7 +14,7 @@
 #include "base/widest.h"
 #include "cloud/morton.h"
 #include "cloud/node_spacing.h"
-#include "cloud/radix_sort.h"
+#include "cloud/key_sort.h"
 
 namespace alidade {
 
@@ -172,17 +172,16 @@ void sumUp(std::vector<BuildNode>& nodes) {
   }
 }
 
-void sortCell(const PlanCell& cell, std::span<const std::uint64_t> packed, SortKeys& sort, CellPoints& points) {
+void sortCell(const PlanCell& cell, std::span<const std::uint64_t> packed, RawVector<std::uint64_t>& keys, CellPoints& points) {
   const std::size_t count = packed.size();
   const int axisBits = 16 - cell.depth;
   const int rowBits = std::bit_width(count);
   points.droppedBits = std::max(0, (3 * axisBits + rowBits - 64 + 2) / 3);
-  const int drop = 3 * points.droppedBits, bits = 3 * axisBits - drop;
+  const int drop = 3 * points.droppedBits;
   const std::uint64_t inCell = axisBits == 16 ? 0xffffffffffffull : (std::uint64_t{1} << 3 * axisBits) - 1;
-  auto& keys = sort.keys;
   keys.resize(count);
   makeKeys(packed.data(), count, inCell, drop, rowBits, keys.data());
-  sortKeys(keys, sort.scratch, rowBits + bits);
+  sortKeys(keys);
   points.code.resize(count), points.row.resize(count);
   points.x.resize(count), points.y.resize(count), points.z.resize(count);
   points.level.assign(count, 0);

@@ -80,13 +80,9 @@ struct BorderSample {
   std::int16_t from;  ///< accepted at every pass q >= from
 };
 
-/// What sorting needs beside the points; keeps its memory for the next cell.
-struct SortKeys {
-  RawVector<std::uint64_t> keys, scratch;
-};
-
-/// Sorts a cell's points into `points`. `packed` holds x | y << 16 | z << 32 of each point, in source order.
-void sortCell(const PlanCell& cell, std::span<const std::uint64_t> packed, SortKeys& sort, CellPoints& points);
+/// Sorts a cell's points into `points`. `packed` holds x | y << 16 | z << 32 of each point, in source order; `keys` is
+/// overwritten, and keeps its memory for the next cell.
+void sortCell(const PlanCell& cell, std::span<const std::uint64_t> packed, RawVector<std::uint64_t>& keys, CellPoints& points);
 
 /// Gives every point of the cell its level. Returns those that the cell leaves to the tree above it (level
 /// below the cell's depth, undecided), ascending; none for a whole tile.

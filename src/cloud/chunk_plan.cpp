@@ -7,7 +7,7 @@
 #include <map>
 
 #include "cloud/morton.h"
-#include "cloud/radix_sort.h"
+#include "cloud/key_sort.h"
 #include "cloud/raw_bytes.h"
 
 namespace alidade {
@@ -68,9 +68,8 @@ ChunkPlan::ChunkPlan(std::span<const glm::i64vec3> sample, std::uint64_t pointCo
       self(self, tile, from, depth + 1, Codes(low, high));
     }
   };
-  RawVector<std::uint64_t> scratch;
   for (auto& [code, codes] : tiles) {
-    sortKeys(codes, scratch, 3 * 16);
+    sortKeys(codes);
     const std::size_t firstCell = m_cells.size();
     const glm::ivec3 tile = tileOfCode(code);
     cut(cut, tile, 0, 0, codes);

@@ -234,7 +234,7 @@ bool PartStages::readNote(const std::vector<std::byte>& bytes) {
 }
 
 std::uint64_t PartStages::costOf(std::uint32_t stream) const {
-  // Records as loaded, cell by cell and as written, keys twice, places, lists of two passes, the tree's lists.
+  // Records as loaded, cell by cell and as written, keys, places twice, lists of two passes, the tree's lists.
   return m_streamPoints[stream] * (3 * m_layout.bytes + 8 + 100);
 }
 
@@ -300,7 +300,7 @@ void PartStages::Output::clear() {
 }
 
 Result<void> PartStages::buildStream(std::uint32_t stream, Workshop& shop) {
-  auto& [noise, sort, points, records, packed, output] = shop;
+  auto& [noise, keys, points, records, packed, output] = shop;
   output.clear();
   output.columns.resize(columnCount());
   auto loaded = m_streams->load(m_usedStreams[stream]);
@@ -335,7 +335,7 @@ Result<void> PartStages::buildStream(std::uint32_t stream, Workshop& shop) {
       taken += run.count;
     }
     if (taken != count) return damaged();
-    sortCell(cell, packed, sort, points);
+    sortCell(cell, packed, keys, points);
     const int coarsest = cell.depth > 0 ? cell.depth : kCoarsestPass;
     std::vector<Obstacle> obstacles;
     if (m_tree.kind == LevelKind::BlueNoise) {

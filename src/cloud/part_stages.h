@@ -46,7 +46,7 @@ class PartStages {
   /// What a thread needs to build; kept from stream to stream, for the same reason.
   struct Workshop {
     BlueNoise noise;
-    SortKeys sort;
+    RawVector<std::uint64_t> keys;
     CellPoints points;
     RawVector<std::byte> records;  ///< of a cell, in the source's order
     RawVector<std::uint64_t> packed;

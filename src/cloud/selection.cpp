@@ -10,7 +10,7 @@
 
 #include "base/parallel.h"
 #include "base/widest.h"
-#include "cloud/radix_sort.h"
+#include "cloud/key_sort.h"
 #include "cloud/view_pyramid.h"
 
 namespace alidade {
@@ -110,8 +110,7 @@ void addVisible(const PointStore& store, std::uint32_t storeIndex, const ViewPyr
 void sortFrontToBack(std::vector<Candidate>& candidates) {
   RawVector<std::uint64_t> keys(candidates.size());
   for (std::size_t i = 0; i < keys.size(); ++i) keys[i] = std::uint64_t{std::bit_cast<std::uint32_t>(candidates[i].squaredDistance)} << 32 | i;
-  RawVector<std::uint64_t> scratch;
-  sortKeys(keys, scratch, 63);
+  sortKeys(keys);
   std::vector<Candidate> sorted;
   sorted.reserve(candidates.size());
   for (const std::uint64_t key : keys) sorted.push_back(candidates[key & 0xffffffff]);
