@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <map>
 
+#include "base/widest.h"
 #include "cloud/morton.h"
 #include "cloud/key_sort.h"
 #include "cloud/raw_bytes.h"
@@ -31,6 +32,23 @@ glm::ivec3 tileOfCode(std::uint64_t code) {
 
 std::uint64_t cellCode(const PlanCell& c) {
   return mortonOf(c.cell.x, c.cell.y, c.cell.z) << 3 * (16 - c.depth);
+}
+
+std::size_t slotOf(std::uint64_t tile) {
+  return (tile & 3) | (tile >> 21 & 3) << 2 | (tile >> 42 & 3) << 4;
+}
+
+/// As far as tiles are known: how many places that is.
+ALIDADE_WIDEST std::size_t findKnown(const CellFinder::Met* met, const std::uint64_t* tiles, const std::uint64_t* places, std::size_t count,
+                                     std::uint32_t* cells) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const CellFinder::Met& tile = met[slotOf(tiles[i])];
+    if (tile.tile != tiles[i]) return i;
+    const int depth = tile.depth, drop = 16 - depth;
+    const std::uint64_t place = places[i], x = (place & 0xffff) >> drop, y = (place >> 16 & 0xffff) >> drop, z = (place >> 32 & 0xffff) >> drop;
+    cells[i] = tile.grid[(z << depth | y) << depth | x];
+  }
+  return count;
 }
 
 }  // namespace
@@ -94,6 +112,14 @@ ChunkPlan::ChunkPlan(std::span<const glm::i64vec3> sample, std::uint64_t pointCo
     inStream += expected[c];
   }
   if (!m_cells.empty()) ++m_streamCount;
+}
+
+void CellFinder::find(const std::uint64_t* tiles, const std::uint64_t* places, std::size_t count, std::uint32_t* cells) {
+  for (std::size_t i = 0; (i += findKnown(m_met.data(), tiles + i, places + i, count - i, cells + i)) < count;) {
+    const auto found = m_plan.m_tiles.find(tileOfKey(tiles[i]));
+    if (found == m_plan.m_tiles.end()) cells[i++] = ChunkPlan::kNone;
+    else m_met[slotOf(tiles[i])] = {tiles[i], found->second.depth, found->second.grid.data()};
+  }
 }
 
 }  // namespace alidade

@@ -62,30 +62,27 @@ class ChunkPlan {
 };
 
 /// Looks cells up; remembers tiles that it met, as a scan's order comes back to them. One a thread.
+///
+/// A tile is named by its key, 21 bits an axis, x lowest; a place in it by 16 bits an axis, x lowest, and whatever above.
 class CellFinder {
  public:
   explicit CellFinder(const ChunkPlan& plan) : m_plan(plan) {}
 
-  /// The cell that holds a place of a tile, or ChunkPlan::kNone for a tile that the sample did not meet.
-  std::uint32_t find(const glm::ivec3& tile, const glm::u16vec3& place) {
-    Met& met = m_met[static_cast<std::size_t>((tile.x & 3) | (tile.y & 3) << 2 | (tile.z & 3) << 4)];
-    if (tile != met.tile || met.grid == nullptr) {
-      const auto found = m_plan.m_tiles.find(tile);
-      if (found == m_plan.m_tiles.end()) return ChunkPlan::kNone;
-      met = {tile, found->second.depth, found->second.grid.data()};
-    }
-    const int shift = 16 - met.depth;
-    const std::uint32_t x = static_cast<std::uint32_t>(place.x) >> shift, y = static_cast<std::uint32_t>(place.y) >> shift,
-                        z = static_cast<std::uint32_t>(place.z) >> shift;
-    return met.grid[(z << met.depth | y) << met.depth | x];
+  static glm::ivec3 tileOfKey(std::uint64_t key) {
+    const auto part = [key](int shift) { return static_cast<std::int32_t>(key >> shift << 43 >> 32) >> 11; };
+    return {part(0), part(21), part(42)};
   }
 
- private:
+  /// The cell that holds each place of each tile, or ChunkPlan::kNone for a tile that the sample did not meet.
+  void find(const std::uint64_t* tiles, const std::uint64_t* places, std::size_t count, std::uint32_t* cells);
+
   struct Met {
-    glm::ivec3 tile{0};
+    std::uint64_t tile = ~std::uint64_t{0};
     int depth = 0;
     const std::uint32_t* grid = nullptr;
   };
+
+ private:
   const ChunkPlan& m_plan;
   std::array<Met, 64> m_met;
 };

@@ -15,6 +15,7 @@
 #include <type_traits>
 #include <unordered_map>
 
+#include "base/widest.h"
 #include "cloud/raw_bytes.h"
 #include "cloud/record_packing.h"
 #include "cloud/scan_reading.h"
@@ -73,6 +74,24 @@ class OtherCells {
   std::vector<glm::ivec3> m_tiles;
 };
 
+constexpr std::size_t kStretch = 256;
+
+/// Some points: units from the lattice's corner, and colours as they are drawn.
+struct Stretch {
+  std::array<std::int64_t, kStretch> x, y, z;
+  std::array<std::uint16_t, kStretch> colours;
+};
+
+/// The keys of the points' tiles (CellFinder), and their places in these with their colours, as in DisplayPoint.
+ALIDADE_WIDEST void namePlaces(const Stretch& points, std::size_t count, std::uint64_t* __restrict tiles, std::uint64_t* __restrict places) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto x = static_cast<std::uint64_t>(points.x[i]), y = static_cast<std::uint64_t>(points.y[i]),
+               z = static_cast<std::uint64_t>(points.z[i]);
+    tiles[i] = (x >> 16 & 0x1fffff) | (y >> 16 & 0x1fffff) << 21 | (z >> 16 & 0x1fffff) << 42;
+    places[i] = (x & 0xffff) | (y & 0xffff) << 16 | (z & 0xffff) << 32 | static_cast<std::uint64_t>(points.colours[i]) << 48;
+  }
+}
+
 class Worker {
  public:
   Worker(const ChunkPlan& plan, const Lattice& lattice, const PointSchema& schema, std::uint16_t brightest, OtherCells& others,
@@ -88,7 +107,7 @@ class Worker {
     if (count == 0) return Outcome::Done;
     if (!m_schema.covers(batch)) return Outcome::NewColumns;
     if (!pack(batch)) return Outcome::OffLattice;
-    send(number, count);
+    send(number, count, [this](const std::uint32_t* rows, std::uint32_t some, std::byte* to) { copyRecords(rows, some, to); });
     return Outcome::Done;
   }
 
@@ -99,7 +118,7 @@ class Worker {
     if (!m_packing) {
       if (!m_schema.covers(format)) return Outcome::NewColumns;
       if (format.scale != m_lattice.scale || format.offset != m_lattice.offset) return Outcome::OffLattice;
-      m_packing.emplace(m_schema, format);
+      m_packing.emplace(m_schema, format, m_layout.bytes - m_layout.columnsAt);
       for (const RecordField& field : format.fields) {
         if (!field.extra && field.name == "rgb") m_rgbAt = field.at;
         if (!field.extra && field.name == "intensity") m_intensityAt = field.at;
@@ -109,8 +128,11 @@ class Worker {
     const glm::i64vec3 low = glm::i64vec3(records.low) - m_lattice.corner, high = glm::i64vec3(records.high) - m_lattice.corner;
     if (records.count == 0) return Outcome::Done;
     if (!m_lattice.counts(low) || !m_lattice.counts(high)) return Outcome::OffLattice;
-    pack(records);
-    send(number, records.count);
+    locate(records);
+    send(number, records.count, [&](const std::uint32_t* rows, std::uint32_t count, std::byte* to) {
+      for (std::uint32_t i = 0; i < count; ++i) std::memcpy(to + i * m_layout.bytes, &m_places[rows[i]], sizeof m_places[0]);
+      m_packing->pack(records.data, rows, count, to + m_layout.columnsAt, m_layout.bytes);
+    });
     return Outcome::Done;
   }
 
@@ -123,22 +145,22 @@ class Worker {
   bool pack(const PointBatch& batch) {
     const std::size_t count = batch.size(), stride = m_layout.bytes;
     m_records.resize(count * stride);
-    m_cells.resize(count);
+    m_places.resize(count), m_cells.resize(count);
     const PointSchema::Packing packing(m_schema, batch);
-    // A stretch after the other: what one column leaves is at hand for the next.
-    constexpr std::size_t kStretch = 256;
     std::array<glm::i64vec3, kStretch> units;
-    std::array<std::uint16_t, kStretch> colours;
+    // A stretch after the other: what one column leaves is at hand for the next.
     for (std::size_t first = 0; first < count; first += kStretch) {
       const std::size_t some = std::min(kStretch, count - first);
       std::byte* out = m_records.data() + first * stride;
       if (!m_lattice.unitsOf(std::span(batch.position).subspan(first, some), units.data(), nullptr)) return false;
+      for (std::size_t i = 0; i < some; ++i) m_stretch.x[i] = units[i].x, m_stretch.y[i] = units[i].y, m_stretch.z[i] = units[i].z;
       const auto part = [&](const auto& column) {
         using Column = std::span<const typename std::decay_t<decltype(column)>::value_type>;
         return column.size() == count ? Column(column).subspan(first, some) : Column();
       };
-      displayColours(part(batch.rgb), batch.rgbWhite, part(batch.intensity), m_brightest, some, colours.data());
-      for (std::size_t i = 0; i < some; ++i) put(units[i], colours[i], first + i, out + i * stride);
+      displayColours(part(batch.rgb), batch.rgbWhite, part(batch.intensity), m_brightest, some, m_stretch.colours.data());
+      locate(first, some);
+      for (std::size_t i = 0; i < some; ++i) std::memcpy(out + i * stride, &m_places[first + i], sizeof m_places[0]);
       if (m_lattice.exactBytes() > 0)
         for (std::size_t i = 0; i < some; ++i)
           if (!m_lattice.packExact(batch.position[first + i], out + i * stride + m_layout.exactAt)) return false;
@@ -147,16 +169,14 @@ class Worker {
     return true;
   }
 
-  /// The point's eight bytes, and its cell.
-  void put(const glm::i64vec3& unit, std::uint16_t colour, std::size_t row, std::byte* out) {
-    const glm::ivec3 tile(unit >> std::int64_t{16});
-    const glm::u16vec3 place(unit & std::int64_t{0xffff});
-    std::uint32_t cell = m_finder.find(tile, place);
-    if (cell == ChunkPlan::kNone) cell = otherCell(tile);
-    m_cells[row] = cell;
-    const std::uint64_t packed = static_cast<std::uint64_t>(place.x) | static_cast<std::uint64_t>(place.y) << 16 |
-                                 static_cast<std::uint64_t>(place.z) << 32 | static_cast<std::uint64_t>(colour) << 48;
-    std::memcpy(out, &packed, sizeof packed);
+  /// What a record begins with, and the cell, of the stretch's points, which are the batch's from `first` on.
+  void locate(std::size_t first, std::size_t count) {
+    std::array<std::uint64_t, kStretch> tiles;
+    namePlaces(m_stretch, count, tiles.data(), m_places.data() + first);
+    std::uint32_t* cells = m_cells.data() + first;
+    m_finder.find(tiles.data(), m_places.data() + first, count, cells);
+    for (std::size_t i = 0; i < count; ++i)
+      if (cells[i] == ChunkPlan::kNone) cells[i] = otherCell(CellFinder::tileOfKey(tiles[i]));
   }
 
   static glm::ivec3 numbersOf(const std::byte* record) {
@@ -185,27 +205,27 @@ class Worker {
     m_dropped += all - records.count;
   }
 
-  /// The records as the store's, and the cell of each.
-  void pack(const PointRecords& records) {
-    const std::size_t stride = m_layout.bytes, bytes = records.format.bytes;
-    m_records.resize(records.count * stride);
-    m_cells.resize(records.count);
-    constexpr std::size_t kStretch = 256;
-    std::array<std::uint16_t, kStretch> colours, intensities;
+  void locate(const PointRecords& records) {
+    const std::size_t bytes = records.format.bytes;
+    m_places.resize(records.count), m_cells.resize(records.count);
+    std::array<std::uint16_t, kStretch> intensities;
     std::array<glm::u16vec3, kStretch> rgb;
     for (std::size_t first = 0; first < records.count; first += kStretch) {
       const std::size_t some = std::min(kStretch, records.count - first);
       const std::byte* from = records.data + first * bytes;
-      std::byte* out = m_records.data() + first * stride;
       const auto take = [&](std::size_t at, auto& column) {
         for (std::size_t i = 0; i < some; ++i) std::memcpy(&column[i], from + i * bytes + at, sizeof column[i]);
         return std::span<const typename std::decay_t<decltype(column)>::value_type>(column).first(some);
       };
-      if (m_rgbAt) displayColours(take(*m_rgbAt, rgb), records.format.rgbWhite, {}, m_brightest, some, colours.data());
-      else displayColours({}, 0, m_intensityAt ? take(*m_intensityAt, intensities) : std::span<const std::uint16_t>(), m_brightest, some, colours.data());
-      for (std::size_t i = 0; i < some; ++i)
-        put(glm::i64vec3(numbersOf(from + i * bytes)) - m_lattice.corner, colours[i], first + i, out + i * stride);
-      m_packing->pack(from, some, out + m_layout.columnsAt, stride, stride - m_layout.columnsAt);
+      std::uint16_t* colours = m_stretch.colours.data();
+      if (m_rgbAt) displayColours(take(*m_rgbAt, rgb), records.format.rgbWhite, {}, m_brightest, some, colours);
+      else displayColours({}, 0, m_intensityAt ? take(*m_intensityAt, intensities) : std::span<const std::uint16_t>(), m_brightest, some, colours);
+      for (std::size_t i = 0; i < some; ++i) {
+        const glm::ivec3 numbers = numbersOf(from + i * bytes);
+        m_stretch.x[i] = numbers.x - m_lattice.corner.x, m_stretch.y[i] = numbers.y - m_lattice.corner.y,
+        m_stretch.z[i] = numbers.z - m_lattice.corner.z;
+      }
+      locate(first, some);
     }
   }
 
@@ -237,8 +257,9 @@ class Worker {
     }
   }
 
-  /// Records to their streams, a run a cell, in the batch's order inside it.
-  void send(std::uint64_t number, std::size_t count) {
+  /// Records to their streams, a run a cell, in the batch's order inside it; `write` puts those of some rows there.
+  template <class Write>
+  void send(std::uint64_t number, std::size_t count, const Write& write) {
     const std::uint32_t most = *std::max_element(m_cells.begin(), m_cells.begin() + static_cast<std::ptrdiff_t>(count));
     if (m_inBatch.size() <= most) m_inBatch.resize(most + 1), m_counts.resize(most + 1);
     m_met.clear();
@@ -256,7 +277,7 @@ class Worker {
         std::uint32_t fits = 0;
         std::byte* to = m_writer.beginRun(streamOf(cell), {cell, m_inBatch[cell], number}, &fits);
         m_inBatch[cell] -= fits;
-        copyRecords(row, fits, to);
+        write(row, fits, to);
         row += fits;
       }
     }
@@ -272,6 +293,8 @@ class Worker {
   RecordStreams::Writer m_writer;
   std::optional<RecordPacking> m_packing;
   std::optional<std::size_t> m_rgbAt, m_intensityAt;  ///< in the source's records
+  Stretch m_stretch;
+  RawVector<std::uint64_t> m_places;  ///< of the batch: what a record begins with
   RawVector<std::byte> m_records;
   std::vector<std::byte> m_usable;
   std::vector<std::uint32_t> m_cells;

@@ -13,39 +13,44 @@
 
 namespace alidade {
 
-/// How a file's records become those of a store, without columns in between.
+/// How a file's records become those of a store, without columns in between: every sixteen bytes of a store's record are
+/// put together in a register.
 class RecordPacking {
  public:
-  /// The schema covers the format.
-  RecordPacking(const PointSchema& schema, const RecordFormat& format);
+  /// The schema covers the format. `room`: bytes of a store's record for the schema's columns, a multiple of 8.
+  RecordPacking(const PointSchema& schema, const RecordFormat& format, std::size_t room);
 
-  /// Writes the schema's columns of `count` records, one after the other and zeros up to the record's end: record i at
-  /// out + i * stride, with `room` bytes.
-  void pack(const std::byte* records, std::size_t count, std::byte* out, std::size_t stride, std::size_t room) const;
+  /// Writes the schema's columns of `count` records, one after the other and zeros up to the room's end: those of record
+  /// rows[i] of `records` at out + i * stride.
+  void pack(const std::byte* records, const std::uint32_t* rows, std::size_t count, std::byte* out, std::size_t stride) const;
 
- private:
-  /// Bytes of the file's record that become part of a word of the store's.
-  struct Copied {
-    std::size_t at, bytes;  ///< bytes: 1, 2, 4, 6 or 8
-    std::size_t word;
-    int shift;
+  using Bytes = std::uint8_t __attribute__((vector_size(16)));
+  /// Bytes of a stretch of the file's record, each where it belongs.
+  struct Shuffle {
+    std::size_t from;
+    Bytes take, keep;
   };
   /// A byte whose bits become part of a word.
   struct Spread {
-    std::size_t at, word;
+    std::size_t at;
     std::array<std::uint64_t, 256> values{};
   };
-  /// What reaches over words, or is as wide as no number.
-  struct Wide {
-    std::size_t at, bytes, to;
+  /// Sixteen bytes of the store's record, or the last eight.
+  struct Lane {
+    std::vector<Shuffle> shuffles;
+    std::array<std::vector<Spread>, 2> spreads;  ///< of each word
+    std::size_t bytes = 16;
   };
-  void addCopied(std::size_t from, std::size_t bytes, std::size_t to);
+
+ private:
+  struct Copied {
+    std::size_t from, to;  ///< a byte
+  };
+  void addCopied(std::vector<Copied> bytes, Lane& lane) const;
   void addSpread(const RecordField::Part& part, std::size_t to);
 
   std::size_t m_recordBytes;
-  std::vector<Copied> m_copied;
-  std::vector<Spread> m_spread;
-  std::vector<Wide> m_wide;
+  std::vector<Lane> m_lanes;
   bool m_widensColours = false;
   std::size_t m_coloursAt = 0;
 };
