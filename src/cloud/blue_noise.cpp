@@ -118,10 +118,18 @@ ALIDADE_WIDEST void widen(const std::uint16_t* from, std::size_t count, float* t
   for (std::size_t i = 0; i < count; ++i) to[i] = from[i];
 }
 
+/// Whole numbers times a power of two, cut to whole ones.
+ALIDADE_WIDEST void scaleDown(float* column, std::size_t count, float by) {
+  for (std::size_t i = 0; i < count; ++i) column[i] = static_cast<float>(static_cast<std::int32_t>(column[i] * by));
+}
+
 /// Axis bits up to the highest in which a point and the one before it differ; of the first point nothing.
-ALIDADE_WIDEST void findSplits(const std::uint16_t* x, const std::uint16_t* y, const std::uint16_t* z, std::size_t count, std::uint8_t* bits) {
+ALIDADE_WIDEST void findSplits(const float* x, const float* y, const float* z, std::size_t count, std::uint8_t* bits) {
+  const auto differingIn = [](const float* column, std::size_t i) {
+    return static_cast<std::int32_t>(column[i]) ^ static_cast<std::int32_t>(column[i - 1]);
+  };
   for (std::size_t i = 1; i < count; ++i) {
-    const std::int32_t differing = (x[i] ^ x[i - 1]) | (y[i] ^ y[i - 1]) | (z[i] ^ z[i - 1]);
+    const std::int32_t differing = differingIn(x, i) | differingIn(y, i) | differingIn(z, i);
     // A whole number below 2^16 is exact as a float, whose exponent is its highest bit.
     const std::int32_t width = (std::bit_cast<std::int32_t>(static_cast<float>(differing)) >> 23) - 126;
     bits[i] = static_cast<std::uint8_t>(width > 0 ? width : 0);
@@ -169,11 +177,17 @@ struct BlueNoise::Spacing {
 };
 
 void BlueNoise::Survivors::reserve(std::size_t points) {
-  const std::size_t size = points + std::max<std::size_t>(kLanes, 64);  // 64 split bits are looked at at a time
-  if (x.size() >= size) return;
-  x.resize(size), y.resize(size), z.resize(size);
-  splitBits.resize(size);
-  index.resize(size);
+  if (apart >= points + kLanes) return;
+  apart = points + kLanes;
+  places.assign(3 * apart, 0);
+  index.resize(apart);
+}
+
+void BlueNoise::Survivors::take(const blue_noise::Sample* samples, std::size_t points) {
+  float *x = column(0), *y = column(1), *z = column(2);
+  for (std::size_t i = 0; i < points; ++i)
+    x[i] = samples[i].x, y[i] = samples[i].y, z[i] = samples[i].z, index[i] = samples[i].index;
+  count = points;
 }
 
 BlueNoise::Slot* BlueNoise::slotOf(std::uint64_t code) {
@@ -214,9 +228,11 @@ std::array<std::uint32_t, 27> BlueNoise::blocksAround(std::int32_t x, std::int32
 void BlueNoise::layBricks(const Spacing& spacing) {
   m_bricks.clear();
   m_blocks.clear();
+  const int wholeBrick = spacing.brickBits - spacing.shift;
   const auto begin = [&](std::uint32_t i) {
-    const std::int32_t x = spacing.brickOf(m_alive.x[i]), y = spacing.brickOf(m_alive.y[i]), z = spacing.brickOf(m_alive.z[i]);
-    if (i == 0 || m_alive.splitBits[i] > spacing.brickBits + 2) {
+    const glm::vec3 place = m_alive.at(i);
+    const std::int32_t x = spacing.brickOf(place.x), y = spacing.brickOf(place.y), z = spacing.brickOf(place.z);
+    if (i == 0 || m_splitBits[i] > wholeBrick + 2) {
       Block& block = m_blocks.emplace_back();
       block.code = mortonOf(static_cast<std::uint64_t>(x >> 2), static_cast<std::uint64_t>(y >> 2), static_cast<std::uint64_t>(z >> 2));
       block.firstBrick = static_cast<std::uint32_t>(m_bricks.size());
@@ -225,9 +241,11 @@ void BlueNoise::layBricks(const Spacing& spacing) {
     if (i > 0) m_bricks.back().last = i;
     m_bricks.push_back({i, 0});
   };
-  m_alive.splitBits[0] = kFirst;
+  m_splitBits.resize(std::max(m_splitBits.size(), m_alive.count + 64));  // 64 are looked at at a time
+  findSplits(m_alive.column(0), m_alive.column(1), m_alive.column(2), m_alive.count, m_splitBits.data());
+  m_splitBits[0] = kFirst;
   for (std::uint32_t first = 0; first < m_alive.count; first += 64) {
-    std::uint64_t starts = exceeding(m_alive.splitBits.data() + first, spacing.brickBits);
+    std::uint64_t starts = exceeding(m_splitBits.data() + first, wholeBrick);
     if (m_alive.count - first < 64) starts &= (std::uint64_t{1} << (m_alive.count - first)) - 1;
     for (; starts != 0; starts &= starts - 1) begin(first + static_cast<std::uint32_t>(std::countr_zero(starts)));
   }
@@ -273,7 +291,7 @@ void BlueNoise::obstruct(const Spacing& spacing, std::span<const Obstacle> obsta
         for (std::uint32_t p = brick.first; p < brick.last; ++p) {
           float& least = m_nearSquared[brick.nearAt + (p - brick.first)];
           for (const glm::vec3& sample : samples) {
-            const glm::vec3 apart = glm::vec3(m_alive.x[p], m_alive.y[p], m_alive.z[p]) - sample;
+            const glm::vec3 apart = m_alive.at(p) - sample;
             least = std::min(least, glm::dot(apart, apart));
           }
         }
@@ -290,19 +308,19 @@ void BlueNoise::runPass(int q, bool isFirst, std::span<const Obstacle> obstacles
   spacing.brickBits = spacingBits + 1;
   spacing.shift = std::max(0, spacingBits - kSpacingBits);
   if (spacing.shift > 0) {  // one more than in the pass before
-    for (auto* column : {&m_alive.x, &m_alive.y, &m_alive.z})
-      for (std::size_t i = 0; i < m_alive.count; ++i) (*column)[i] = std::floor((*column)[i] * 0.5f);
+    for (std::size_t axis = 0; axis < 3; ++axis) scaleDown(m_alive.column(axis), m_alive.count, 0.5f);
   }
   layBricks(spacing);
   obstruct(spacing, obstacles);
   m_given.clear();
   for (std::size_t i = 0; i < m_alive.count && !settled.empty(); ++i) m_given.push_back(settled[m_alive.index[i]] <= q);
-  m_accepted.reserve(m_alive.count);
+  if (m_accepted.size() < m_alive.count) m_accepted.resize(m_alive.count);
   if (m_squared.size() < m_alive.count + kLanes) m_squared.resize(m_alive.count + kLanes);
   const bool grouped = m_alive.count < kFewInBrick * m_bricks.size();
   blue_noise::Pass pass;
-  pass.alive = {m_alive.index.data(), m_alive.x.data(), m_alive.y.data(), m_alive.z.data(), m_alive.splitBits.data()};
-  pass.accepted = {m_accepted.index.data(), m_accepted.x.data(), m_accepted.y.data(), m_accepted.z.data(), m_accepted.splitBits.data()};
+  pass.places = m_alive.places.data(), pass.apart = m_alive.apart;
+  pass.index = m_alive.index.data();
+  pass.accepted = m_accepted.data();
   pass.squared = m_squared.data();
   pass.bricks = m_bricks.data();
   pass.blocks = m_blocks.data(), pass.blockCount = m_blocks.size();
@@ -312,10 +330,10 @@ void BlueNoise::runPass(int q, bool isFirst, std::span<const Obstacle> obstacles
   pass.nearSquared = m_nearSquared.data();
   pass.given = m_given.empty() ? nullptr : m_given.data();
   static const Choose choose = widestChoose();
-  m_accepted.count = choose(pass);
+  const std::size_t accepted = choose(pass);
   rate(m_squared.data(), m_alive.index.data(), m_alive.count, spacing.shift, q * kLevelSteps,
        isFirst ? kDeepestLevelStep : (q + 1) * kLevelSteps - 1, levels.data());
-  std::swap(m_alive, m_accepted);
+  m_alive.take(m_accepted.data(), accepted);
 }
 
 std::vector<std::uint32_t> BlueNoise::thin(const TilePoints& points, std::span<const Obstacle> obstacles, int finest,
@@ -324,13 +342,12 @@ std::vector<std::uint32_t> BlueNoise::thin(const TilePoints& points, std::span<c
   m_alive.reserve(count);
   m_alive.count = count;
   std::iota(m_alive.index.begin(), m_alive.index.begin() + static_cast<std::ptrdiff_t>(count), 0u);
-  widen(points.x.data(), count, m_alive.x.data());
-  widen(points.y.data(), count, m_alive.y.data());
-  widen(points.z.data(), count, m_alive.z.data());
-  findSplits(points.x.data(), points.y.data(), points.z.data(), count, m_alive.splitBits.data());
+  const std::array columns{points.x, points.y, points.z};
   const int shift = std::max(0, kFinestPass - finest - kSpacingBits);
-  for (auto* column : {&m_alive.x, &m_alive.y, &m_alive.z})
-    for (std::size_t i = 0; shift > 1 && i < count; ++i) (*column)[i] = std::floor(std::ldexp((*column)[i], 1 - shift));
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    widen(columns[axis].data(), count, m_alive.column(axis));
+    if (shift > 1) scaleDown(m_alive.column(axis), count, std::ldexp(1.0f, 1 - shift));
+  }
   m_near.assign(obstacles.begin(), obstacles.end());
   const auto codeOf = [](const Obstacle& o) {
     return mortonOf(static_cast<std::uint64_t>(o.x + kBias), static_cast<std::uint64_t>(o.y + kBias), static_cast<std::uint64_t>(o.z + kBias));

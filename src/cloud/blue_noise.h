@@ -8,7 +8,10 @@
 #include <span>
 #include <vector>
 
+#include <glm/glm.hpp>
+
 #include "cloud/blue_noise_pass.h"
+#include "cloud/raw_bytes.h"
 
 namespace alidade {
 
@@ -47,11 +50,13 @@ class BlueNoise {
  private:
   /// The survivors of a pass, padded by a register's width.
   struct Survivors {
-    std::vector<std::uint32_t> index;
-    std::vector<float> x, y, z;         ///< units, halved as often as the pass asks
-    std::vector<std::uint8_t> splitBits;  ///< axis bits up to the highest in which a point and the one before it differ
-    std::size_t count = 0;
+    std::size_t count = 0, apart = 0;  ///< points, and the columns' room
+    RawVector<std::uint32_t> index;
+    RawVector<float> places;           ///< x, y, z, each `apart` after the other: units, halved as often as the pass asks
+    float* column(std::size_t axis) { return places.data() + axis * apart; }
+    glm::vec3 at(std::size_t i) const { return {places[i], places[apart + i], places[2 * apart + i]}; }
     void reserve(std::size_t points);
+    void take(const blue_noise::Sample* samples, std::size_t points);
   };
   struct Spacing;
   struct Slot {
@@ -67,8 +72,10 @@ class BlueNoise {
   /// The blocks beside one, and itself, of those whose code is below the limit.
   std::array<std::uint32_t, 27> blocksAround(std::int32_t x, std::int32_t y, std::int32_t z, std::uint64_t limit);
 
-  Survivors m_alive, m_accepted;
-  std::vector<float> m_squared;        ///< of each survivor's distance to the nearest accepted; -1: is one
+  Survivors m_alive;
+  RawVector<blue_noise::Sample> m_accepted;
+  RawVector<std::uint8_t> m_splitBits;  ///< axis bits up to the highest in which a survivor and the one before it differ
+  RawVector<float> m_squared;        ///< of each survivor's distance to the nearest accepted; -1: is one
   std::vector<blue_noise::Brick> m_bricks;
   std::vector<blue_noise::Block> m_blocks;
   std::vector<Slot> m_table;           ///< open addressing

@@ -40,18 +40,18 @@ struct Neighbourhood {
   std::uint8_t count = 0;
 };
 
-/// Columns of points in Morton order.
-template <class Index, class Float, class Byte>
-struct Columns {
-  Index* index;
-  Float *x, *y, *z;
-  Byte* splitBits;  ///< axis bits up to the highest in which a point and the one before it differ
+/// A point that was accepted.
+struct Sample {
+  float x, y, z;
+  std::uint32_t index;
 };
 
 /// One pass over the survivors.
 struct Pass {
-  Columns<const std::uint32_t, const float, const std::uint8_t> alive;
-  Columns<std::uint32_t, float, std::uint8_t> accepted;
+  const float* places;  ///< of the survivors, in Morton order: x; y and z stand `apart` floats further, each after the other
+  std::size_t apart;
+  const std::uint32_t* index;
+  Sample* accepted;
   float* squared;  ///< of each survivor's distance to the nearest accepted, as far as that is below the spacing; kAccepted: is one
   Brick* bricks;
   const Block* blocks;

@@ -46,6 +46,18 @@ inline std::uint32_t atLeast(const Lanes& lanes, float limit) {
 #endif
 }
 
+/// The set bits of `wanted`, all of them set in `filled`, by their ranks among those.
+inline std::uint64_t ranksOf(std::uint64_t wanted, std::uint64_t filled) {
+#if defined(__BMI2__)
+  return _pext_u64(wanted, filled);
+#else
+  std::uint64_t ranks = 0;
+  for (; wanted != 0; wanted &= wanted - 1)
+    ranks |= std::uint64_t{1} << __builtin_popcountll(filled & ((wanted & -wanted) - 1));
+  return ranks;
+#endif
+}
+
 /// Runs of points, or of accepted samples.
 struct Runs {
   struct Run {
@@ -64,6 +76,17 @@ struct Group {
   std::uint64_t bricks;  ///< of the block, filled or not
   std::uint32_t place;   ///< of its first brick
   std::uint32_t firstBrick, lastBrick;
+};
+
+/// A register's worth of points.
+struct Places {
+  Lanes x, y, z;
+
+  Lanes lowered(const Lanes& least, const Sample& sample) const {
+    const Lanes dx = x - sample.x, dy = y - sample.y, dz = z - sample.z;
+    const Lanes here = dx * dx + dy * dy + dz * dz;
+    return here < least ? here : least;
+  }
 };
 
 class Choice {
@@ -99,25 +122,29 @@ class Choice {
       const Block& other = m.blocks[at];
       std::uint64_t bits = other.filled & neighbours.entries[e].bricks;
       if (&other == &block) bits &= (std::uint64_t{1} << group.place) - 1;
-      for (; bits != 0; bits &= bits - 1) {
-        const std::uint64_t below = other.filled & ((bits & -bits) - 1);
-        const Brick& brick = m.bricks[other.firstBrick + static_cast<std::uint32_t>(__builtin_popcountll(below))];
-        points.add(brick.first, brick.last);
-        samples.add(brick.acceptedFirst, brick.acceptedLast);
+      // Bricks that follow each other are one run of points: no neighbourhood fills its block, so that a run ends.
+      for (std::uint64_t ranks = ranksOf(bits, other.filled); ranks != 0; ranks &= ranks + (ranks & -ranks)) {
+        const auto first = static_cast<std::uint32_t>(__builtin_ctzll(ranks));
+        const auto length = static_cast<std::uint32_t>(__builtin_ctzll(~(ranks >> first)));
+        const Brick* bricks = m.bricks + other.firstBrick + first;
+        points.add(bricks[0].first, bricks[length - 1].last);
+        samples.add(bricks[0].acceptedFirst, bricks[length - 1].acceptedLast);
       }
     }
   }
 
-  /// Lowers the squared distances of the points from i on to what accepted samples make them.
-  Lanes lowered(std::uint32_t i, Lanes least, std::uint32_t from, std::uint32_t to) const {
-    const Lanes x = lanesAt(m.alive.x + i), y = lanesAt(m.alive.y + i), z = lanesAt(m.alive.z + i);
-    for (std::uint32_t a = from; a < to; ++a) least = lowered(x, y, z, least, m.accepted.x[a], m.accepted.y[a], m.accepted.z[a]);
+  Places placesAt(std::uint32_t i) const {
+    const float* x = m.places + i;
+    return {lanesAt(x), lanesAt(x + m.apart), lanesAt(x + 2 * m.apart)};
+  }
+
+  /// Squared distances of points, lowered to what accepted samples make them.
+  Lanes lowered(const Places& places, Lanes least, std::uint32_t from, std::uint32_t to) const {
+    for (const Sample *sample = m.accepted + from, *end = m.accepted + to; sample != end; ++sample) least = places.lowered(least, *sample);
     return least;
   }
-  static Lanes lowered(const Lanes& x, const Lanes& y, const Lanes& z, const Lanes& least, float atX, float atY, float atZ) {
-    const Lanes dx = x - atX, dy = y - atY, dz = z - atZ;
-    const Lanes here = dx * dx + dy * dy + dz * dz;
-    return here < least ? here : least;
+  void lower(std::uint32_t i, std::uint32_t from, std::uint32_t to) {
+    put(lowered(placesAt(i), lanesAt(m.squared + i), from, to), m.squared + i);
   }
 
   /// What a register holds beyond a run's end is either written again by the bricks that follow, or is lowered to
@@ -127,8 +154,9 @@ class Choice {
     findBefore(block, group, points, samples);
     const std::uint32_t first = m.bricks[group.firstBrick].first, last = m.bricks[group.lastBrick - 1].last;
     for (std::uint32_t v = first; v < last; v += kLanes) {
+      const Places places = placesAt(v);
       Lanes least = Lanes{} + std::numeric_limits<float>::max();
-      for (std::size_t r = 0; r < samples.count; ++r) least = lowered(v, least, samples.runs[r].from, samples.runs[r].to);
+      for (std::size_t r = 0; r < samples.count; ++r) least = lowered(places, least, samples.runs[r].from, samples.runs[r].to);
       put(least, m.squared + v);
     }
     for (std::uint32_t b = group.firstBrick; b < group.lastBrick; ++b) {
@@ -139,46 +167,41 @@ class Choice {
     const std::uint32_t keptBefore = m_kept;
     m_brick = group.firstBrick;
     m.bricks[m_brick].acceptedFirst = m_kept;
-    for (std::uint32_t v = first; v < last; v += kLanes) chooseAmong(v, first, last);
+    for (std::uint32_t v = first; v < last; v += kLanes) {
+      const std::uint32_t kept = m_kept;
+      chooseAmong(v, last);
+      for (std::uint32_t w = first; kept < m_kept && w < last; w += kLanes)
+        if (w != v) lower(w, kept, m_kept);
+    }
     closeBricks(last - 1);
     m.bricks[m_brick].acceptedLast = m_kept;
     for (std::size_t r = 0; keptBefore < m_kept && r < points.count; ++r)
-      for (std::uint32_t v = points.runs[r].from; v < points.runs[r].to; v += kLanes)
-        put(lowered(v, lanesAt(m.squared + v), keptBefore, m_kept), m.squared + v);
+      for (std::uint32_t v = points.runs[r].from; v < points.runs[r].to; v += kLanes) lower(v, keptBefore, m_kept);
   }
 
-  /// The points from v on, those before `last`, of a group that begins at `first`.
-  void chooseAmong(std::uint32_t v, std::uint32_t first, std::uint32_t last) {
+  /// A register's worth of points from v on, those before `last`.
+  void chooseAmong(std::uint32_t v, std::uint32_t last) {
     const std::uint32_t inside = last - v >= kLanes ? 0xffff : (1u << (last - v)) - 1;
     std::uint32_t given = 0;
     for (std::uint32_t lane = 0; m.given != nullptr && lane < std::min<std::uint32_t>(kLanes, last - v); ++lane)
       given |= static_cast<std::uint32_t>(m.given[v + lane] != 0) << lane;
-    const Lanes x = lanesAt(m.alive.x + v), y = lanesAt(m.alive.y + v), z = lanesAt(m.alive.z + v);
+    const Places places = placesAt(v);
     Lanes least = lanesAt(m.squared + v);
     std::uint32_t taken = 0;
     for (std::uint32_t open = (atLeast(least, m.spacingSquared) | given) & inside; open != 0;) {
       const auto lane = static_cast<std::uint32_t>(__builtin_ctz(open));
-      const std::uint32_t i = v + lane;
-      const float atX = m.alive.x[i], atY = m.alive.y[i], atZ = m.alive.z[i];
-      accept(i);
+      least = places.lowered(least, accept(v + lane));
       taken |= 1u << lane;
-      least = lowered(x, y, z, least, atX, atY, atZ);
-      for (std::uint32_t w = first; w < last; w += kLanes)
-        if (w != v) put(lowered(w, lanesAt(m.squared + w), m_kept - 1, m_kept), m.squared + w);
       open = (atLeast(least, m.spacingSquared) | given) & inside & ~((2u << lane) - 1);
     }
     put(least, m.squared + v);
     for (; taken != 0; taken &= taken - 1) m.squared[v + static_cast<std::uint32_t>(__builtin_ctz(taken))] = kAccepted;
   }
 
-  void accept(std::uint32_t i) {
+  Sample accept(std::uint32_t i) {
     closeBricks(i);
-    std::uint8_t split = 0;
-    for (; m_seen <= i; ++m_seen) split = std::max(split, m.alive.splitBits[m_seen]);
-    m.accepted.index[m_kept] = m.alive.index[i];
-    m.accepted.x[m_kept] = m.alive.x[i], m.accepted.y[m_kept] = m.alive.y[i], m.accepted.z[m_kept] = m.alive.z[i];
-    m.accepted.splitBits[m_kept] = split;
-    ++m_kept;
+    const float* x = m.places + i;
+    return m.accepted[m_kept++] = {x[0], x[m.apart], x[2 * m.apart], m.index[i]};
   }
 
   /// Goes on to the brick of point i.
@@ -190,7 +213,7 @@ class Choice {
   }
 
   const Pass m;
-  std::uint32_t m_kept = 0, m_seen = 0, m_brick = 0;
+  std::uint32_t m_kept = 0, m_brick = 0;
 };
 
 }  // namespace
