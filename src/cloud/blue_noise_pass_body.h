@@ -82,10 +82,9 @@ struct Group {
 struct Places {
   Lanes x, y, z;
 
-  Lanes lowered(const Lanes& least, const Sample& sample) const {
-    const Lanes dx = x - sample.x, dy = y - sample.y, dz = z - sample.z;
-    const Lanes here = dx * dx + dy * dy + dz * dz;
-    return here < least ? here : least;
+  Lanes squaredFrom(float atX, float atY, float atZ) const {
+    const Lanes dx = x - atX, dy = y - atY, dz = z - atZ;
+    return dx * dx + dy * dy + dz * dz;
   }
 };
 
@@ -140,7 +139,10 @@ class Choice {
 
   /// Squared distances of points, lowered to what accepted samples make them.
   Lanes lowered(const Places& places, Lanes least, std::uint32_t from, std::uint32_t to) const {
-    for (const Sample *sample = m.accepted + from, *end = m.accepted + to; sample != end; ++sample) least = places.lowered(least, *sample);
+    for (const Sample *sample = m.accepted + from, *end = m.accepted + to; sample != end; ++sample) {
+      const Lanes here = places.squaredFrom(sample->x, sample->y, sample->z);
+      least = here < least ? here : least;
+    }
     return least;
   }
   void lower(std::uint32_t i, std::uint32_t from, std::uint32_t to) {
@@ -169,9 +171,9 @@ class Choice {
     m.bricks[m_brick].acceptedFirst = m_kept;
     for (std::uint32_t v = first; v < last; v += kLanes) {
       const std::uint32_t kept = m_kept;
-      chooseAmong(v, last);
-      for (std::uint32_t w = first; kept < m_kept && w < last; w += kLanes)
-        if (w != v) lower(w, kept, m_kept);
+      std::uint32_t taken = chooseAmong(v, last);
+      for (std::uint32_t w = first; kept < m_kept && w < last; w += kLanes) lower(w, kept, m_kept);
+      for (; taken != 0; taken &= taken - 1) m.squared[v + static_cast<std::uint32_t>(__builtin_ctz(taken))] = kAccepted;
     }
     closeBricks(last - 1);
     m.bricks[m_brick].acceptedLast = m_kept;
@@ -179,29 +181,36 @@ class Choice {
       for (std::uint32_t v = points.runs[r].from; v < points.runs[r].to; v += kLanes) lower(v, keptBefore, m_kept);
   }
 
-  /// A register's worth of points from v on, those before `last`.
-  void chooseAmong(std::uint32_t v, std::uint32_t last) {
+  /// A register's worth of points from v on, those before `last`: one bit for each that is accepted.
+  std::uint32_t chooseAmong(std::uint32_t v, std::uint32_t last) {
     const std::uint32_t inside = last - v >= kLanes ? 0xffff : (1u << (last - v)) - 1;
     std::uint32_t given = 0;
     for (std::uint32_t lane = 0; m.given != nullptr && lane < std::min<std::uint32_t>(kLanes, last - v); ++lane)
       given |= static_cast<std::uint32_t>(m.given[v + lane] != 0) << lane;
     const Places places = placesAt(v);
-    Lanes least = lanesAt(m.squared + v);
-    std::uint32_t taken = 0;
-    for (std::uint32_t open = (atLeast(least, m.spacingSquared) | given) & inside; open != 0;) {
-      const auto lane = static_cast<std::uint32_t>(__builtin_ctz(open));
-      least = places.lowered(least, accept(v + lane));
-      taken |= 1u << lane;
-      open = (atLeast(least, m.spacingSquared) | given) & inside & ~((2u << lane) - 1);
+    const std::uint32_t open = (atLeast(lanesAt(m.squared + v), m.spacingSquared) | given) & inside;
+    // Who would keep whom away, one beside the other; then who does, one after the other.
+    std::array<std::uint32_t, kLanes> apart;
+    for (std::uint32_t bits = open; bits != 0; bits &= bits - 1) {
+      const auto lane = static_cast<std::uint32_t>(__builtin_ctz(bits));
+      const float* x = m.places + v + lane;
+      apart[lane] = atLeast(places.squaredFrom(x[0], x[m.apart], x[2 * m.apart]), m.spacingSquared) | given;
     }
-    put(least, m.squared + v);
-    for (; taken != 0; taken &= taken - 1) m.squared[v + static_cast<std::uint32_t>(__builtin_ctz(taken))] = kAccepted;
+    std::uint32_t taken = 0;
+    for (std::uint32_t left = open; left != 0;) {
+      const auto lane = static_cast<std::uint32_t>(__builtin_ctz(left));
+      accept(v + lane);
+      taken |= 1u << lane;
+      left &= left - 1;
+      left &= apart[lane];
+    }
+    return taken;
   }
 
-  Sample accept(std::uint32_t i) {
+  void accept(std::uint32_t i) {
     closeBricks(i);
     const float* x = m.places + i;
-    return m.accepted[m_kept++] = {x[0], x[m.apart], x[2 * m.apart], m.index[i]};
+    m.accepted[m_kept++] = {x[0], x[m.apart], x[2 * m.apart], m.index[i]};
   }
 
   /// Goes on to the brick of point i.
