@@ -314,13 +314,16 @@ void BlueNoise::runPass(int q, bool isFirst, std::span<const Obstacle> obstacles
   obstruct(spacing, obstacles);
   m_given.clear();
   for (std::size_t i = 0; i < m_alive.count && !settled.empty(); ++i) m_given.push_back(settled[m_alive.index[i]] <= q);
-  if (m_accepted.size() < m_alive.count) m_accepted.resize(m_alive.count);
+  if (m_accepted.size() < m_alive.count + blue_noise::kSamples) {
+    m_accepted.resize(m_alive.count + blue_noise::kSamples);
+    m_samplesNear.resize(m_accepted.size());
+  }
   if (m_squared.size() < m_alive.count + kLanes) m_squared.resize(m_alive.count + kLanes);
   const bool grouped = m_alive.count < kFewInBrick * m_bricks.size();
   blue_noise::Pass pass;
   pass.places = m_alive.places.data(), pass.apart = m_alive.apart;
   pass.index = m_alive.index.data();
-  pass.accepted = m_accepted.data();
+  pass.accepted = m_accepted.data(), pass.near = m_samplesNear.data();
   pass.squared = m_squared.data();
   pass.bricks = m_bricks.data();
   pass.blocks = m_blocks.data(), pass.blockCount = m_blocks.size();

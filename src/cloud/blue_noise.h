@@ -73,7 +73,7 @@ class BlueNoise {
   std::array<std::uint32_t, 27> blocksAround(std::int32_t x, std::int32_t y, std::int32_t z, std::uint64_t limit);
 
   Survivors m_alive;
-  RawVector<blue_noise::Sample> m_accepted;
+  RawVector<blue_noise::Sample> m_accepted, m_samplesNear;
   RawVector<std::uint8_t> m_splitBits;  ///< axis bits up to the highest in which a survivor and the one before it differ
   RawVector<float> m_squared;        ///< of each survivor's distance to the nearest accepted; -1: is one
   std::vector<blue_noise::Brick> m_bricks;

@@ -40,6 +40,9 @@ struct Neighbourhood {
   std::uint8_t count = 0;
 };
 
+/// Samples that are copied at a time; arrays of samples, too, reach so far beyond their end.
+constexpr std::size_t kSamples = 4;
+
 /// A point that was accepted.
 struct Sample {
   float x, y, z;
@@ -52,6 +55,7 @@ struct Pass {
   std::size_t apart;
   const std::uint32_t* index;
   Sample* accepted;
+  Sample* near;  ///< room for as many
   float* squared;  ///< of each survivor's distance to the nearest accepted, as far as that is below the spacing; kAccepted: is one
   Brick* bricks;
   const Block* blocks;

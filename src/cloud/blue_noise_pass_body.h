@@ -132,21 +132,32 @@ class Choice {
     }
   }
 
+  /// Samples one after the other, so that one loop goes over them: how long many short ones are cannot be predicted.
+  const Sample* gather(const Runs& samples) const {
+    Sample* to = m.near;
+    for (std::size_t r = 0; r < samples.count; ++r) {
+      const Runs::Run& run = samples.runs[r];
+      for (std::uint32_t i = run.from; i < run.to; i += kSamples) std::memcpy(to + (i - run.from), m.accepted + i, kSamples * sizeof(Sample));
+      to += run.to - run.from;
+    }
+    return to;
+  }
+
   Places placesAt(std::uint32_t i) const {
     const float* x = m.places + i;
     return {lanesAt(x), lanesAt(x + m.apart), lanesAt(x + 2 * m.apart)};
   }
 
   /// Squared distances of points, lowered to what accepted samples make them.
-  Lanes lowered(const Places& places, Lanes least, std::uint32_t from, std::uint32_t to) const {
-    for (const Sample *sample = m.accepted + from, *end = m.accepted + to; sample != end; ++sample) {
+  static Lanes lowered(const Places& places, Lanes least, const Sample* sample, const Sample* end) {
+    for (; sample != end; ++sample) {
       const Lanes here = places.squaredFrom(sample->x, sample->y, sample->z);
       least = here < least ? here : least;
     }
     return least;
   }
   void lower(std::uint32_t i, std::uint32_t from, std::uint32_t to) {
-    put(lowered(placesAt(i), lanesAt(m.squared + i), from, to), m.squared + i);
+    put(lowered(placesAt(i), lanesAt(m.squared + i), m.accepted + from, m.accepted + to), m.squared + i);
   }
 
   /// What a register holds beyond a run's end is either written again by the bricks that follow, or is lowered to
@@ -155,12 +166,9 @@ class Choice {
     Runs points, samples;
     findBefore(block, group, points, samples);
     const std::uint32_t first = m.bricks[group.firstBrick].first, last = m.bricks[group.lastBrick - 1].last;
-    for (std::uint32_t v = first; v < last; v += kLanes) {
-      const Places places = placesAt(v);
-      Lanes least = Lanes{} + std::numeric_limits<float>::max();
-      for (std::size_t r = 0; r < samples.count; ++r) least = lowered(places, least, samples.runs[r].from, samples.runs[r].to);
-      put(least, m.squared + v);
-    }
+    const Sample* nearEnd = gather(samples);
+    for (std::uint32_t v = first; v < last; v += kLanes)
+      put(lowered(placesAt(v), Lanes{} + std::numeric_limits<float>::max(), m.near, nearEnd), m.squared + v);
     for (std::uint32_t b = group.firstBrick; b < group.lastBrick; ++b) {
       const Brick& brick = m.bricks[b];
       for (std::uint32_t i = brick.first; brick.nearAt != kNone && i < brick.last; ++i)
