@@ -7,11 +7,12 @@
 #include <array>
 #include <cstring>
 #include <optional>
-#include <type_traits>
+#include <utility>
 
 #include "cloud/byte_pack.h"
 #include "cloud/morton.h"
 #include "cloud/ordered_work.h"
+#include "cloud/record_columns.h"
 #include "cloud/tree_join.h"
 
 namespace alidade {
@@ -46,44 +47,6 @@ std::uint64_t placeOf(const std::byte* record) {
   std::uint64_t packed;
   std::memcpy(&packed, record, sizeof packed);
   return packed & 0xffffffffffffull;
-}
-
-/// Calls what copies records with their length, as a constant where it is a usual one.
-template <class Copy>
-void withLength(std::size_t bytes, const Copy& copy) {
-  switch (bytes) {
-    case 8: return copy(std::integral_constant<std::size_t, 8>{});
-    case 16: return copy(std::integral_constant<std::size_t, 16>{});
-    case 24: return copy(std::integral_constant<std::size_t, 24>{});
-    case 32: return copy(std::integral_constant<std::size_t, 32>{});
-    case 40: return copy(std::integral_constant<std::size_t, 40>{});
-    default: return copy(bytes);
-  }
-}
-
-void copyRecords(const std::byte* const* from, std::size_t count, std::size_t bytes, std::byte* to) {
-  withLength(bytes, [&](auto length) {
-    for (std::size_t i = 0; i < count; ++i) std::memcpy(to + i * std::size_t{length}, from[i], length);
-  });
-}
-
-/// Bytes of `width` from each record, one after the other.
-void takeColumn(const std::byte* records, std::size_t stride, std::size_t count, std::size_t width, std::byte* out) {
-  const auto copy = [&](auto fixed) {
-    constexpr std::size_t kWidth = decltype(fixed)::value;
-    for (std::size_t i = 0; i < count; ++i) std::memcpy(out + i * kWidth, records + i * stride, kWidth);
-  };
-  switch (width) {
-    case 1: copy(std::integral_constant<std::size_t, 1>{}); break;
-    case 2: copy(std::integral_constant<std::size_t, 2>{}); break;
-    case 4: copy(std::integral_constant<std::size_t, 4>{}); break;
-    case 6: copy(std::integral_constant<std::size_t, 6>{}); break;
-    case 8: copy(std::integral_constant<std::size_t, 8>{}); break;
-    case 12: copy(std::integral_constant<std::size_t, 12>{}); break;
-    case 24: copy(std::integral_constant<std::size_t, 24>{}); break;
-    default:
-      for (std::size_t i = 0; i < count; ++i) std::memcpy(out + i * width, records + i * stride, width);
-  }
 }
 
 UnitBox boxOf(const PlanCell& cell) {
@@ -263,12 +226,16 @@ void PartStages::emit(Output& output, const SubTree& tree, const std::byte* reco
   for (const ColumnShape& column : m_schema.columns) widths.push_back(column.bytes());
   const std::uint64_t first = output.points;
   output.points += tree.order.size();
-  const auto columnOf = [](std::size_t i) { return i < 2 ? i : i - 2 + PartSink::kFirstAttribute; };
-  for (std::size_t i = 0; i < widths.size(); ++i) output.columns[columnOf(i)].resize(output.points * widths[i]);
+  std::vector<std::byte*> out;
+  for (std::size_t i = 0; i < widths.size(); ++i) {
+    auto& column = output.columns[i < 2 ? i : i - 2 + PartSink::kFirstAttribute];
+    column.resize(output.points * widths[i]);
+    out.push_back(column.data() + first * widths[i]);
+  }
+  RecordColumns columns(std::move(widths), m_layout.bytes);
   // Some records at a time: their columns are then taken from the nearest memory there is.
-  constexpr std::size_t kBlock = 256;
+  constexpr std::size_t kBlock = RecordColumns::kBlock;
   constexpr std::size_t kAhead = 64;  // records asked for before they are wanted
-  std::vector<std::byte> block(kBlock * m_layout.bytes);
   std::array<const std::byte*, kBlock + kAhead> at{};
   const std::size_t all = tree.order.size();
   const auto locate = [&](std::size_t begin, std::size_t end, const std::byte** to) {
@@ -282,14 +249,9 @@ void PartStages::emit(Output& output, const SubTree& tree, const std::byte* reco
   for (std::size_t start = 0; start < all; start += kBlock) {
     const std::size_t count = std::min(kBlock, all - start);
     locate(std::min(start + kAhead, all), std::min(start + kBlock + kAhead, all), at.data() + kAhead);
-    copyRecords(at.data(), count, m_layout.bytes, block.data());
+    columns.take(at.data(), count, out);
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] += count * columns.widths()[i];
     std::copy_n(at.begin() + kBlock, kAhead, at.begin());
-    std::size_t column = 0;
-    for (std::size_t i = 0; i < widths.size(); ++i) {
-      if (widths[i] > 0)
-        takeColumn(block.data() + column, m_layout.bytes, count, widths[i], output.columns[columnOf(i)].data() + (first + start) * widths[i]);
-      column += widths[i];
-    }
   }
 }
 
