@@ -40,6 +40,7 @@ constexpr std::int32_t kBias = 1 << 19;
 /// Bricks with fewer points than this on average are taken in groups: registers are to be filled.
 constexpr std::size_t kFewInBrick = 7;
 constexpr std::uint64_t kEveryBlock = ~std::uint64_t{0};
+constexpr std::uint64_t kAxisBits = spreadBits(~std::uint64_t{0});
 constexpr std::uint64_t kScatter = 0x9e3779b97f4a7c15ull;
 constexpr std::uint8_t kFirst = 127;  ///< split bits of a point without one before it
 
@@ -170,10 +171,8 @@ struct BlueNoise::Spacing {
   int brickBits = 0;  ///< a brick's edge is twice the spacing
   int shift = 0;      ///< units are halved this often before they are squared
 
-  /// Where a survivor's coordinate lies, in bricks.
-  std::int32_t brickOf(float shifted) const {
-    return (static_cast<std::int32_t>(shifted) + (kBias >> shift)) >> (brickBits - shift);
-  }
+  /// The Morton code of the brick that holds a place of this Morton code.
+  std::uint64_t brickOf(std::uint64_t code) const { return (code | mortonOf(kBias, kBias, kBias)) >> 3 * brickBits; }
 };
 
 void BlueNoise::Survivors::reserve(std::size_t points) {
@@ -198,24 +197,28 @@ BlueNoise::Slot* BlueNoise::slotOf(std::uint64_t code) {
   }
 }
 
-std::array<std::uint32_t, 27> BlueNoise::blocksAround(std::int32_t x, std::int32_t y, std::int32_t z, std::uint64_t limit) {
-  std::array<std::array<std::uint64_t, 3>, 3> spread;
-  for (int d = -1; d <= 1; ++d) {
-    const auto at = static_cast<std::size_t>(d + 1);
-    spread[0][at] = spreadBits(static_cast<std::uint64_t>(x + d));
-    spread[1][at] = spreadBits(static_cast<std::uint64_t>(y + d)) << 1;
-    spread[2][at] = spreadBits(static_cast<std::uint64_t>(z + d)) << 2;
+std::array<std::uint32_t, 27> BlueNoise::blocksAround(std::uint64_t code, std::uint64_t limit) {
+  // Each axis of the code one less, as it is and one more: what stands between its bits hands the carry on.
+  std::array<std::array<std::uint64_t, 3>, 3> axes;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::uint64_t bits = kAxisBits << axis, one = std::uint64_t{1} << axis, own = code & bits;
+    axes[axis] = {(own - one) & bits, own, ((own | ~bits) + one) & bits};
   }
   std::array<std::uint64_t, 27> codes;
-  for (std::size_t n = 0; n < 27; ++n) codes[n] = spread[0][n % 3] | spread[1][n / 3 % 3] | spread[2][n / 9];
-  // The first slot nearly always tells; which way cannot be predicted, and is not.
+  for (std::size_t n = 0; n < 27; ++n) codes[n] = axes[0][n % 3] | axes[1][n / 3 % 3] | axes[2][n / 9];
+  // What cannot be predicted is not: which of them are wanted, and what the first slot, which nearly always tells, says.
+  std::array<std::uint8_t, 27> wanted;
+  std::size_t count = 0;
+  for (std::size_t n = 0; n < 27; ++n) wanted[count] = static_cast<std::uint8_t>(n), count += codes[n] < limit;
   std::array<std::uint32_t, 27> around;
+  around.fill(kNone);
   std::uint32_t open = 0;
-  for (std::size_t n = 0; n < 27; ++n) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t n = wanted[i];
     const Slot& slot = m_table[(codes[n] * kScatter) >> m_tableShift & m_tableMask];
-    const bool wanted = codes[n] < limit, isIt = slot.key == codes[n] + 1;
-    around[n] = wanted & isIt ? slot.block : kNone;
-    open |= static_cast<std::uint32_t>(wanted & !isIt & (slot.key != 0)) << n;
+    const bool isIt = slot.key == codes[n] + 1;
+    around[n] = isIt ? slot.block : kNone;
+    open |= static_cast<std::uint32_t>(!isIt & (slot.key != 0)) << n;
   }
   for (; open != 0; open &= open - 1) {
     const auto n = static_cast<std::size_t>(std::countr_zero(open));
@@ -225,19 +228,18 @@ std::array<std::uint32_t, 27> BlueNoise::blocksAround(std::int32_t x, std::int32
 }
 
 /// Cuts the survivors into bricks, and the bricks into blocks.
-void BlueNoise::layBricks(const Spacing& spacing) {
+void BlueNoise::layBricks(const Spacing& spacing, std::span<const std::uint64_t> codes) {
   m_bricks.clear();
   m_blocks.clear();
   const int wholeBrick = spacing.brickBits - spacing.shift;
   const auto begin = [&](std::uint32_t i) {
-    const glm::vec3 place = m_alive.at(i);
-    const std::int32_t x = spacing.brickOf(place.x), y = spacing.brickOf(place.y), z = spacing.brickOf(place.z);
+    const std::uint64_t brick = spacing.brickOf(codes[m_alive.index[i]]);
     if (i == 0 || m_splitBits[i] > wholeBrick + 2) {
       Block& block = m_blocks.emplace_back();
-      block.code = mortonOf(static_cast<std::uint64_t>(x >> 2), static_cast<std::uint64_t>(y >> 2), static_cast<std::uint64_t>(z >> 2));
+      block.code = brick >> 6;
       block.firstBrick = static_cast<std::uint32_t>(m_bricks.size());
     }
-    m_blocks.back().filled |= std::uint64_t{1} << placeInBlock(x, y, z);
+    m_blocks.back().filled |= std::uint64_t{1} << (brick & 63);
     if (i > 0) m_bricks.back().last = i;
     m_bricks.push_back({i, 0});
   };
@@ -254,10 +256,7 @@ void BlueNoise::layBricks(const Spacing& spacing) {
   m_tableShift = std::countl_zero(m_tableMask);
   m_table.assign(m_tableMask + 1, {});
   for (std::size_t b = 0; b < m_blocks.size(); ++b) *slotOf(m_blocks[b].code) = {m_blocks[b].code + 1, static_cast<std::uint32_t>(b)};
-  for (Block& block : m_blocks) {
-    const auto part = [&](int axis) { return static_cast<std::int32_t>(gatherBits(block.code >> axis)); };
-    block.before = blocksAround(part(0), part(1), part(2), block.code + 1);
-  }
+  for (Block& block : m_blocks) block.before = blocksAround(block.code, block.code + 1);
 }
 
 /// Sets how far the points of bricks about obstacles are from them.
@@ -275,9 +274,10 @@ void BlueNoise::obstruct(const Spacing& spacing, std::span<const Obstacle> obsta
       if (obstacles[i].from <= spacing.q)
         samples.emplace_back(obstacles[i].x >> spacing.shift, obstacles[i].y >> spacing.shift, obstacles[i].z >> spacing.shift);
     if (samples.empty()) continue;
-    const std::int32_t x = cut(first.x), y = cut(first.y), z = cut(first.z);
-    const auto around = blocksAround(x >> 2, y >> 2, z >> 2, kEveryBlock);
-    const Neighbourhood& neighbours = neighbourhoods(1)[placeInBlock(x, y, z)];
+    const std::uint64_t brickCode = mortonOf(static_cast<std::uint64_t>(cut(first.x)), static_cast<std::uint64_t>(cut(first.y)),
+                                             static_cast<std::uint64_t>(cut(first.z)));
+    const auto around = blocksAround(brickCode >> 6, kEveryBlock);
+    const Neighbourhood& neighbours = neighbourhoods(1)[brickCode & 63];
     for (std::uint8_t e = 0; e < neighbours.count; ++e) {
       const std::uint32_t at = around[neighbours.entries[e].block];
       if (at == kNone) continue;
@@ -300,7 +300,7 @@ void BlueNoise::obstruct(const Spacing& spacing, std::span<const Obstacle> obsta
   }
 }
 
-void BlueNoise::runPass(int q, bool isFirst, std::span<const Obstacle> obstacles, std::span<std::int16_t> levels,
+void BlueNoise::runPass(int q, bool isFirst, const TilePoints& points, std::span<const Obstacle> obstacles, std::span<std::int16_t> levels,
                         std::span<const std::int8_t> settled) {
   const int spacingBits = kFinestPass - q;
   Spacing spacing;
@@ -310,7 +310,7 @@ void BlueNoise::runPass(int q, bool isFirst, std::span<const Obstacle> obstacles
   if (spacing.shift > 0) {  // one more than in the pass before
     for (std::size_t axis = 0; axis < 3; ++axis) scaleDown(m_alive.column(axis), m_alive.count, 0.5f);
   }
-  layBricks(spacing);
+  layBricks(spacing, points.code);
   obstruct(spacing, obstacles);
   m_given.clear();
   for (std::size_t i = 0; i < m_alive.count && !settled.empty(); ++i) m_given.push_back(settled[m_alive.index[i]] <= q);
@@ -356,7 +356,7 @@ std::vector<std::uint32_t> BlueNoise::thin(const TilePoints& points, std::span<c
     return mortonOf(static_cast<std::uint64_t>(o.x + kBias), static_cast<std::uint64_t>(o.y + kBias), static_cast<std::uint64_t>(o.z + kBias));
   };
   std::sort(m_near.begin(), m_near.end(), [&](const Obstacle& a, const Obstacle& b) { return codeOf(a) < codeOf(b); });
-  for (int q = finest; q >= coarsest && m_alive.count > 0; --q) runPass(q, q == finest, m_near, levels, settled);
+  for (int q = finest; q >= coarsest && m_alive.count > 0; --q) runPass(q, q == finest, points, m_near, levels, settled);
   return {m_alive.index.begin(), m_alive.index.begin() + static_cast<std::ptrdiff_t>(m_alive.count)};
 }
 

@@ -30,6 +30,7 @@ struct Obstacle {
 
 /// Points inside a tile in Morton order, columns parallel.
 struct TilePoints {
+  std::span<const std::uint64_t> code;  ///< Morton, in the tile
   std::span<const std::uint16_t> x, y, z;
 };
 
@@ -64,13 +65,13 @@ class BlueNoise {
     std::uint32_t block = 0;
   };
 
-  void runPass(int q, bool isFirst, std::span<const Obstacle> obstacles, std::span<std::int16_t> levels,
+  void runPass(int q, bool isFirst, const TilePoints& points, std::span<const Obstacle> obstacles, std::span<std::int16_t> levels,
                std::span<const std::int8_t> settled);
-  void layBricks(const Spacing& spacing);
+  void layBricks(const Spacing& spacing, std::span<const std::uint64_t> codes);
   void obstruct(const Spacing& spacing, std::span<const Obstacle> obstacles);
   Slot* slotOf(std::uint64_t code);
-  /// The blocks beside one, and itself, of those whose code is below the limit.
-  std::array<std::uint32_t, 27> blocksAround(std::int32_t x, std::int32_t y, std::int32_t z, std::uint64_t limit);
+  /// The blocks beside the one of this code, and itself, of those whose code is below the limit.
+  std::array<std::uint32_t, 27> blocksAround(std::uint64_t code, std::uint64_t limit);
 
   Survivors m_alive;
   RawVector<blue_noise::Sample> m_accepted, m_samplesNear;

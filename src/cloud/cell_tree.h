@@ -71,7 +71,7 @@ struct CellPoints {
   int droppedBits = 0;
 
   std::size_t size() const { return row.size(); }
-  TilePoints places() const { return {x, y, z}; }
+  TilePoints places() const { return {code, x, y, z}; }
 };
 
 /// A sample that neighbours must keep their distance from.
