@@ -7,11 +7,19 @@
 #include <mutex>
 #include <new>
 
+#if defined(__linux__)
+#include <sys/mman.h>
+#endif
+
 namespace alidade {
 
 namespace {
 
-constexpr std::align_val_t kBoundary{64};
+constexpr std::size_t kHugePage = std::size_t{2} << 20;
+
+constexpr std::align_val_t boundaryOf(std::size_t bytes) {
+  return std::align_val_t(bytes >= kHugePage ? kHugePage : 64);
+}
 
 #if defined(__SANITIZE_ADDRESS__)
 constexpr std::size_t kSmallestKept = ~std::size_t{0};  // a kept block would hide the use of one that was returned
@@ -44,7 +52,7 @@ class KeptBlocks {
     const std::lock_guard lock(m_mutex);
     for (; m_bytes + bytes > kKeptPixelBytes; m_blocks.pop_front()) {
       m_bytes -= m_blocks.front().bytes;
-      ::operator delete(m_blocks.front().memory, kBoundary);
+      ::operator delete(m_blocks.front().memory, boundaryOf(m_blocks.front().bytes));
     }
     try {
       m_blocks.push_back({memory, bytes});
@@ -72,12 +80,17 @@ KeptBlocks& keptBlocks() {
 void* takePixels(std::size_t bytes) {
   if (bytes >= kSmallestKept)
     if (void* const kept = keptBlocks().take(bytes)) return kept;
-  return ::operator new(bytes, kBoundary);
+  void* const memory = ::operator new(bytes, boundaryOf(bytes));
+#if defined(__linux__)
+  // Points fall all over a picture: with small pages most of them would miss the table of pages, too.
+  if (bytes >= kHugePage) ::madvise(memory, bytes / kHugePage * kHugePage, MADV_HUGEPAGE);
+#endif
+  return memory;
 }
 
 void returnPixels(void* block, std::size_t bytes) noexcept {
   if (bytes >= kSmallestKept && keptBlocks().keep(block, bytes)) return;
-  ::operator delete(block, kBoundary);
+  ::operator delete(block, boundaryOf(bytes));
 }
 
 }  // namespace alidade

@@ -9,7 +9,7 @@
 
 namespace alidade {
 
-/// Memory for pictures, on a boundary of 64 bytes. Large blocks are kept when they are returned (up to kKeptPixelBytes of the
+/// Memory for pictures, on a boundary of 64 bytes, or of a huge page. Large blocks are kept when they are returned (up to kKeptPixelBytes of the
 /// whole process, the oldest go first) and handed out again: the first touch of fresh pages costs more than writing a picture.
 /// Throws std::bad_alloc.
 void* takePixels(std::size_t bytes);

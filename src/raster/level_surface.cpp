@@ -52,7 +52,7 @@ SurfaceRows<Pixel>::SurfaceRows(const SplatPlanes<Pixel>& planes, const SplatLev
 template <class Pixel>
 void SurfaceRows<Pixel>::takeAtMiddles(int y, const SurfaceRow& row) {
   const auto fallen = [&](int number) -> Row& { return m_fallen[(number + 3) % 3]; };
-  if (m_nextFallen < 0) m_nextFallen = y - 1;
+  m_nextFallen = std::max(m_nextFallen, y - 1);
   for (; m_nextFallen <= y + 1; ++m_nextFallen) {
     const SurfaceRow to = fallen(m_nextFallen).row();
     if (m_nextFallen < 0 || m_nextFallen >= m_height) {
@@ -60,6 +60,10 @@ void SurfaceRows<Pixel>::takeAtMiddles(int y, const SurfaceRow& row) {
       continue;
     }
     const Pixel* pixels = nearestPixels(m_planes, m_start + static_cast<std::size_t>(m_nextFallen) * m_columns, m_columns, m_joined);
+    if (pixels == nullptr) {
+      std::fill_n(to.inverse, m_columns, 0.0f);
+      continue;
+    }
     if constexpr (sizeof(Pixel) == 8) {
       surfaceKernel().takePixels(pixels, m_columns, {to.inverse, nullptr});
       surfaceKernel().takePlaces(pixels, m_columns, to.payload);
@@ -70,40 +74,43 @@ void SurfaceRows<Pixel>::takeAtMiddles(int y, const SurfaceRow& row) {
 
 /// Cell c of this level lies in the coarser one's cell c >> 1, its even half towards the cell before.
 template <class Pixel>
-void SurfaceRows<Pixel>::takeCoarser(int y, const SurfaceRow& row) {
+void SurfaceRows<Pixel>::takeCoarser(int y, Row& row) {
   const int cell = y - m_margin, own = (cell >> 1) + SplatLevels::kMargin, across = (cell & 1) != 0 ? own + 1 : own - 1;
   if (m_coarser->hasCells[static_cast<std::size_t>(own)] == 0) return;
+  row.hasCells = true;
   const auto inner = [&](int number) {  // the outermost cells have none beside them
     const SurfaceCells cells = m_coarser->cells(number);
     return SurfaceCells{cells.inverse + 1, cells.payload ? cells.payload + 1 : nullptr};
   };
   // The first inner one has this level's cells 2 (1 - kMargin) and the next: in the border of level 0, at the start of others.
   const int first = 2 * (1 - SplatLevels::kMargin) + m_margin;
-  const SurfaceRow from{row.inverse + first, row.payload ? row.payload + first : nullptr};
+  const SurfaceRow from{row.row().inverse + first, row.row().payload ? row.row().payload + first : nullptr};
   surfaceKernel().takeCoarser(inner(own), inner(across), m_kind == SurfacePayload::Colour, static_cast<std::size_t>(m_coarser->columns - 2), from);
 }
 
 template <class Pixel>
 void SurfaceRows<Pixel>::join(int y) {
   Row& row = at(m_rows, y);
-  if (y < 0 || y >= m_height) {
-    std::fill_n(row.row().inverse, m_columns, 0.0f);
-    if (m_finer) std::fill_n(at(m_withFiner, y).row().inverse, m_columns, 0.0f);
-    return;
-  }
-  const Pixel* pixels = nearestPixels(m_planes, m_start + static_cast<std::size_t>(y) * m_columns, m_columns, m_joined);
+  const bool isInside = y >= 0 && y < m_height;
+  const Pixel* pixels = isInside ? nearestPixels(m_planes, m_start + static_cast<std::size_t>(y) * m_columns, m_columns, m_joined) : nullptr;
   const SurfaceKernel& kernel = surfaceKernel();
-  if constexpr (sizeof(Pixel) == 8) {
+  row.hasCells = pixels != nullptr;
+  if (pixels == nullptr) {
+    std::fill_n(row.row().inverse, m_columns, 0.0f);
+  } else if constexpr (sizeof(Pixel) == 8) {
     (m_kind == SurfacePayload::Colour ? kernel.takeColours : kernel.takePixels)(pixels, m_columns, row.row());
+    if (m_margin > 0 && m_kind == SurfacePayload::Colour) takeAtMiddles(y, row.row());
   } else {
     kernel.takeDepths(pixels, m_columns, row.row().inverse);
   }
-  if (m_margin > 0 && m_kind == SurfacePayload::Colour) takeAtMiddles(y, row.row());
-  if (m_coarser) takeCoarser(y, row.row());
+  if (m_coarser && isInside) takeCoarser(y, row);
   row.clearBorders(m_columns);
   if (!m_finer) return;
-  kernel.takeNearer(row.cells(), m_finer->cells(y), m_columns, at(m_withFiner, y).row());
-  at(m_withFiner, y).clearBorders(m_columns);
+  Row& withFiner = at(m_withFiner, y);
+  withFiner.hasCells = row.hasCells || (isInside && m_finer->hasCells[static_cast<std::size_t>(y)] != 0);
+  if (withFiner.hasCells) kernel.takeNearer(row.cells(), m_finer->cells(y), m_columns, withFiner.row());
+  else std::fill_n(withFiner.row().inverse, m_columns, 0.0f);
+  withFiner.clearBorders(m_columns);
 }
 
 template <class Pixel>
@@ -112,8 +119,11 @@ SurfaceCells SurfaceRows<Pixel>::row(int y) {
   if (m_next < 0) m_next = y - reach;
   for (; m_next <= y + reach; ++m_next) join(m_next);
   const SurfaceCells own = at(m_rows, y).cells();
+  m_hasCells = at(m_rows, y).hasCells;
   if (!m_closeHoles) return own;
   Rows& rows = m_finer ? m_withFiner : m_rows;
+  m_hasCells = std::ranges::any_of(rows, &Row::hasCells);
+  if (!m_hasCells) return own;
   const auto cellsOf = [&](int number) { return at(rows, number).cells(); };
   surfaceKernel().closeHoles({cellsOf(y - 2), cellsOf(y - 1), cellsOf(y), cellsOf(y + 1), cellsOf(y + 2)}, own, m_columns, m_closed.row());
   return m_closed.cells();
@@ -133,8 +143,12 @@ LevelSurface pulledUp(const SplatPlanes<Pixel>& planes, const SplatLevels& level
     for (auto y = static_cast<int>(first); y < static_cast<int>(last); ++y) {
       const SurfaceRow row = surface.row(y);
       std::fill_n(row.inverse, columns, 0.0f);
-      for (int from = std::max(0, 2 * (y - bare)); from < std::min(2 * (y - bare) + 2, levels.rows[finer]); ++from)
-        surfaceKernel().pull(rows.row(from), static_cast<std::size_t>(columns - 2 * bare), {row.inverse + bare, row.payload ? row.payload + bare : nullptr});
+      for (int from = std::max(0, 2 * (y - bare)); from < std::min(2 * (y - bare) + 2, levels.rows[finer]); ++from) {
+        const SurfaceCells cells = rows.row(from);
+        if (!rows.hasCells()) continue;
+        surface.hasCells[static_cast<std::size_t>(y)] = 1;
+        surfaceKernel().pull(cells, static_cast<std::size_t>(columns - 2 * bare), {row.inverse + bare, row.payload ? row.payload + bare : nullptr});
+      }
       std::fill_n(row.inverse + columns - bare, bare, 0.0f);
     }
   });
@@ -158,7 +172,7 @@ std::optional<LevelSurface> coarseSurface(const SplatPlanes<Pixel>& planes, cons
         const SurfaceRow row = surface.row(y);
         std::copy_n(cells.inverse, columns, row.inverse);
         if (row.payload) std::copy_n(cells.payload, columns, row.payload);
-        surface.hasCells[static_cast<std::size_t>(y)] = std::any_of(cells.inverse, cells.inverse + columns, [](float inverse) { return inverse > 0.0f; });
+        surface.hasCells[static_cast<std::size_t>(y)] = rows.hasCells();
       }
     });
     coarser = std::move(surface);

@@ -54,6 +54,8 @@ class SurfaceRows {
 
   /// Row y, which must be the one after the row before; valid until the next.
   SurfaceCells row(int y);
+  /// Whether there may be anything in the row before that was asked for.
+  bool hasCells() const { return m_hasCells; }
 
  private:
   static constexpr int kReach = 2, kRows = 2 * kReach + 1;  // what takeCoarser() writes before a row's first cell lies in its border
@@ -64,6 +66,7 @@ class SurfaceRows {
     SurfaceCells cells() const { return {m_inverse.data() + kReach, m_payload.empty() ? nullptr : m_payload.data() + kReach}; }
     /// Nothing beside the row's cells: kernels may have written there.
     void clearBorders(std::size_t columns);
+    bool hasCells = false;
 
    private:
     std::vector<float> m_inverse;  ///< with a border of kReach cells of nothing
@@ -73,7 +76,7 @@ class SurfaceRows {
   static Row& at(Rows& rows, int y) { return rows[(y + kRows) % kRows]; }
   void join(int y);
   void takeAtMiddles(int y, const SurfaceRow& row);
-  void takeCoarser(int y, const SurfaceRow& row);
+  void takeCoarser(int y, Row& row);
 
   const SplatPlanes<Pixel>& m_planes;
   std::size_t m_start, m_columns;
@@ -85,6 +88,7 @@ class SurfaceRows {
   int m_next = -1;  ///< the row to join next; -1: none yet
   Rows m_rows, m_withFiner;
   Row m_closed;
+  bool m_hasCells = false;
   std::vector<Pixel> m_joined;
   /// Of a coarser level with colours: inverse depths where the points fell, and their places in their cells, of three rows.
   Row m_fallen[3];

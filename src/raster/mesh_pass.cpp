@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <memory>
 
@@ -244,27 +243,23 @@ Image<float> drawMeshes(const std::vector<std::shared_ptr<const OccluderMesh>>& 
   const std::vector<BlockTask> tasks = blocksInView(meshes, camera, cameraFromWorld);
   if (tasks.empty()) return drawn;
   const int stride = (width + kMeshRowSlack + 15) / 16 * 16;
-  const std::size_t bytes = static_cast<std::size_t>(stride) * height * sizeof(float);
   struct Worker {
-    std::unique_ptr<SplatScratch> scratch;
+    Image<float> pixels;  ///< none until it draws
     std::vector<std::uint32_t> left;
   };
   std::vector<Worker> workers(workerCount());
   parallelFor(tasks.size(), 1, [&](std::size_t first, std::size_t last, int index) {
     Worker& worker = workers[index];
-    if (!worker.scratch) {
-      worker.scratch = std::make_unique<SplatScratch>(bytes);
-      std::memset(worker.scratch->data(), 0, bytes);
-    }
-    const MeshTarget target{static_cast<float*>(worker.scratch->data()), stride};
+    if (worker.pixels.empty()) worker.pixels = Image<float>(stride, height, 0.0f);
+    const MeshTarget target{worker.pixels.data(), stride};
     for (std::size_t i = first; i < last; ++i) drawBlock(tasks[i], camera, target, worker.left);
   });
   parallelFor(static_cast<std::size_t>(height), 32, [&](std::size_t first, std::size_t last, int) {
     for (std::size_t y = first; y < last; ++y) {
       float* row = drawn.row(static_cast<int>(y));
       for (const Worker& worker : workers) {
-        if (!worker.scratch) continue;
-        const float* other = static_cast<const float*>(worker.scratch->data()) + y * stride;
+        if (worker.pixels.empty()) continue;
+        const float* other = worker.pixels.row(static_cast<int>(y));
         for (int x = 0; x < width; ++x) row[x] = std::max(row[x], other[x]);
       }
     }

@@ -69,6 +69,7 @@ DotImage drawDots(const std::vector<SplatLayer>& layers, const Camera& camera,
     std::vector<std::uint64_t> joined;
     for (int y = first; y < last; ++y) {
       const std::uint64_t* pixels = nearestPixels(planes, static_cast<std::size_t>(y) * width, width, joined);
+      if (pixels == nullptr) continue;
       for (int x = 0; x < camera.width(); ++x) {
         const float z = std::bit_cast<float>(static_cast<std::uint32_t>(pixels[x] >> 32));
         if (!(z > 0.0f)) continue;

@@ -150,12 +150,21 @@ ALIDADE_LENS_INLINE void putEight(std::uint32_t* pixels, __mmask8 chosen, const 
   _mm256_mask_storeu_epi32(pixels, chosen, _mm256_min_epu32(_mm256_maskz_loadu_epi32(chosen, pixels), value));
 }
 
+/// The chosen pixels from `at` on lie in two pieces at most.
+ALIDADE_LENS_INLINE void touch(const SplatTarget& target, std::size_t at, __mmask8 chosen) {
+  if (chosen == 0) return;
+  target.touched[(at + static_cast<unsigned>(__builtin_ctz(chosen))) >> SplatPlane::kPieceBits] = 1;
+  target.touched[(at + 31 - static_cast<unsigned>(__builtin_clz(chosen))) >> SplatPlane::kPieceBits] = 1;
+}
+
 /// The first eight lanes' pixels from `at` on, the others' from `then` on.
 template <bool packed>
 ALIDADE_LENS_INLINE void putLanes(const SplatTarget& target, std::size_t at, std::size_t then, Lanes chosen, const Words& depth,
                                   std::uint32_t payload) {
   const __m512i bits = reinterpret_cast<__m512i>(depth);
   const auto first = static_cast<__mmask8>(chosen), second = static_cast<__mmask8>(chosen >> 8);
+  touch(target, at, first);
+  touch(target, then, second);
   if constexpr (packed) {
     // The payload below each depth.
     const __m512i low = _mm512_setr_epi32(16, 0, 16, 1, 16, 2, 16, 3, 16, 4, 16, 5, 16, 6, 16, 7);

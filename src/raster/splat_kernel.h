@@ -64,6 +64,7 @@ struct PlaceInPixel {
 struct SplatTarget {
   std::uint32_t* depth = nullptr;   ///< payload None
   std::uint64_t* packed = nullptr;  ///< the others
+  std::uint8_t* touched = nullptr;  ///< by SplatPlane's pieces, set where anything is drawn
   SplatPayload payload = SplatPayload::None;
   std::uint32_t payloadBase = 0;
 };

@@ -12,6 +12,7 @@
 #endif
 
 #include "raster/splat_kernel.h"
+#include "raster/splat_plane.h"
 
 namespace alidade {
 namespace {
@@ -146,6 +147,7 @@ ALIDADE_LENS_INLINE void put(Pixel* pixel, Pixel value) {
 template <bool packed>
 ALIDADE_LENS_INLINE void put(const SplatTarget& target, std::size_t at, std::uint32_t depth,
                              std::uint32_t payload) {
+  target.touched[at >> SplatPlane::kPieceBits] = 1;
   if constexpr (packed) {
     put(target.packed + at, static_cast<std::uint64_t>(depth) << 32 | payload);
   } else {

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "base/widest.h"
+#include "raster/splat_plane.h"
 
 namespace alidade {
 
@@ -22,11 +23,30 @@ ALIDADE_WIDEST void nearestOf(const std::uint32_t* a, const std::uint32_t* b, st
 
 template <class Pixel>
 const Pixel* nearestPixels(const SplatPlanes<Pixel>& all, std::size_t first, std::size_t count, std::vector<Pixel>& joined) {
-  const auto& planes = all.planes;
-  if (planes.size() == 1) return planes[0] + first;
+  const std::size_t end = first + count, firstPiece = first >> SplatPlane::kPieceBits, endPiece = (end + SplatPlane::kPiece - 1) >> SplatPlane::kPieceBits;
+  const auto isTouched = [](const SplatPixels<Pixel>& plane, std::size_t piece) { return plane.touched == nullptr || plane.touched[piece] != 0; };
+  const SplatPixels<Pixel>* only = nullptr;
+  int drawn = 0;
+  for (const SplatPixels<Pixel>& plane : all.planes) {
+    bool hasAny = false;
+    for (std::size_t piece = firstPiece; piece < endPiece && !hasAny; ++piece) hasAny = isTouched(plane, piece);
+    if (hasAny) only = &plane, ++drawn;
+  }
+  if (drawn == 0) return nullptr;
+  if (drawn == 1) return only->pixels + first;
   joined.resize(count);
-  if (planes.empty()) std::ranges::fill(joined, static_cast<Pixel>(-1));
-  for (std::size_t k = 1; k < planes.size(); ++k) nearestOf(k == 1 ? planes[0] + first : joined.data(), planes[k] + first, count, joined.data());
+  for (std::size_t piece = firstPiece; piece < endPiece; ++piece) {
+    const std::size_t from = std::max(first, piece << SplatPlane::kPieceBits), to = std::min(end, (piece + 1) << SplatPlane::kPieceBits);
+    Pixel* const pixels = joined.data() + (from - first);
+    bool isFirst = true;
+    for (const SplatPixels<Pixel>& plane : all.planes) {
+      if (!isTouched(plane, piece)) continue;
+      if (isFirst) std::copy_n(plane.pixels + from, to - from, pixels);
+      else nearestOf(pixels, plane.pixels + from, to - from, pixels);
+      isFirst = false;
+    }
+    if (isFirst) std::fill_n(pixels, to - from, static_cast<Pixel>(-1));
+  }
   return joined.data();
 }
 

@@ -9,14 +9,22 @@
 
 namespace alidade {
 
-/// A part of the picture as the threads left it: pixel i of thread k is planes[k][i]. All ones where
-/// nothing was drawn.
+/// The picture as one thread left it: all ones where nothing was drawn.
 template <class Pixel>
-struct SplatPlanes {
-  std::vector<const Pixel*> planes;
+struct SplatPixels {
+  const Pixel* pixels = nullptr;
+  /// By piece as SplatPlane has them, whether anything was drawn there; null: anywhere.
+  const std::uint8_t* touched = nullptr;
 };
 
-/// Of each of the pixels [first, first + count) the nearest of all planes; in `joined`, or where a plane alone has them.
+/// As all threads left it.
+template <class Pixel>
+struct SplatPlanes {
+  std::vector<SplatPixels<Pixel>> planes;
+};
+
+/// Of each of the pixels [first, first + count) the nearest of all planes; in `joined`, or where a plane alone has them. Null where
+/// nothing was drawn.
 template <class Pixel>
 const Pixel* nearestPixels(const SplatPlanes<Pixel>& planes, std::size_t first, std::size_t count, std::vector<Pixel>& joined);
 

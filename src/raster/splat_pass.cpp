@@ -4,30 +4,23 @@
 #include "raster/splat_pass.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <memory>
-#include <mutex>
-#include <new>
 #include <numbers>
 #include <optional>
 #include <utility>
 
-#if defined(__linux__)
-#include <sys/mman.h>
-#endif
-
 #include "base/log.h"
 #include "base/parallel.h"
 #include "raster/hidden_tiles.h"
+#include "raster/splat_plane.h"
 
 namespace alidade {
 
 namespace {
 
-constexpr std::size_t kHugePage = std::size_t{2} << 20;
-constexpr std::size_t kAlignment = kHugePage;
 /// Squares as wide as the points of a surface are apart on average would leave a third of it bare where they lie at random,
 /// so they are wider by this; one pixel as long as that is how far apart they are (closeHoles fills in).
 constexpr double kCover = 1.5;
@@ -39,60 +32,11 @@ constexpr double kCellCover = 0.98;
 constexpr std::uint64_t kNearestShare = 8, kMoreBeforeNext = 3, kFewToHide = 300'000;
 constexpr std::size_t kRowsPerBand = 64;
 
-/// Blocks of past frames, a few of them; two frames of one size need no allocation.
-class ScratchPool {
- public:
-  static ScratchPool& instance() {
-    static ScratchPool pool;
-    return pool;
-  }
-
-  void* take(std::size_t bytes) {
-    {
-      std::lock_guard lock(m_mutex);
-      const auto found =
-          std::find_if(m_free.begin(), m_free.end(), [&](const Block& b) { return b.bytes == bytes; });
-      if (found != m_free.end()) {
-        void* data = found->data;
-        m_free.erase(found);
-        return data;
-      }
-    }
-    void* data = ::operator new(bytes, std::align_val_t(kAlignment));
-#if defined(__linux__)
-    // Points fall all over a plane: with small pages most of them would miss the table of pages, too.
-    if (bytes >= kHugePage) ::madvise(data, bytes / kHugePage * kHugePage, MADV_HUGEPAGE);
-#endif
-    return data;
-  }
-
-  void giveBack(void* data, std::size_t bytes) {
-    std::lock_guard lock(m_mutex);
-    m_free.push_back({data, bytes});
-    if (m_free.size() <= kKept) return;
-    ::operator delete(m_free.front().data, std::align_val_t(kAlignment));
-    m_free.erase(m_free.begin());
-  }
-
- private:
-  struct Block {
-    void* data;
-    std::size_t bytes;
-  };
-  static constexpr std::size_t kKept = 24;
-
-  ~ScratchPool() {
-    for (const Block& block : m_free) ::operator delete(block.data, std::align_val_t(kAlignment));
-  }
-
-  std::mutex m_mutex;
-  std::vector<Block> m_free;
-};
-
 struct Task {
   std::uint32_t run;
   std::uint32_t first;
   std::uint32_t count;
+  std::uint32_t share = 0;  ///< of the picture, see shareOut()
 };
 
 std::vector<Task> tasksOf(std::span<const SplatRun> runs, bool onlyChecked) {
@@ -105,6 +49,23 @@ std::vector<Task> tasksOf(std::span<const SplatRun> runs, bool onlyChecked) {
     }
   }
   return tasks;
+}
+
+/// Parts of the picture side by side, of as many points each: threads that draw one part each write where no other does, but for
+/// nodes on the border, and little is left to join.
+void shareOut(std::span<const SplatRun> runs, std::span<Task> tasks, std::size_t shares) {
+  std::vector<std::pair<double, std::size_t>> fromLeft;
+  std::uint64_t points = 0, before = 0;
+  for (std::size_t i = 0; i < tasks.size(); ++i) {
+    const glm::dvec3& middle = runs[tasks[i].run].boxMiddle;
+    fromLeft.push_back({std::atan2(middle.x, middle.z), i});
+    points += tasks[i].count;
+  }
+  std::ranges::sort(fromLeft);
+  for (const auto& [place, i] : fromLeft) {
+    tasks[i].share = static_cast<std::uint32_t>(before * shares / points);
+    before += tasks[i].count;
+  }
 }
 
 /// Fits the surface's cells of runs that draw footprints of more than a pixel, and points the runs at them.
@@ -184,12 +145,19 @@ class PlaneDrawer {
  public:
   PlaneDrawer(std::span<SplatRun> runs, int width, int height, const SplatDrawing& drawing)
       : m_runs(runs), m_payload(drawing.payload), m_closeHoles(drawing.closeHoles), m_levels(width, height, drawing.intoLevels ? levelsFor(runs) : 1),
-        m_fits(runs, drawing.intoLevels ? nullptr : drawing.onSurface), m_scratch(static_cast<std::size_t>(workerCount())) {
+        m_fits(runs, drawing.intoLevels ? nullptr : drawing.onSurface), m_planes(static_cast<std::size_t>(workerCount())) {
     if (drawing.intoLevels)
       for (SplatRun& run : runs) run.view.levels = &m_levels;
   }
 
   const SplatLevels& levels() const { return m_levels; }
+
+  /// For the next frame, on all cores.
+  void clear() {
+    parallelFor(m_planes.size(), 1, [&](std::size_t first, std::size_t last, int) {
+      for (std::size_t i = first; i < last; ++i) m_planes[i].reset();
+    });
+  }
   std::optional<LevelSurface> coarse(const SplatPlanes<Pixel>& all) const {
     return coarseSurface(all, m_levels, m_closeHoles, 1, surfacePayloadOf(m_payload));
   }
@@ -197,6 +165,7 @@ class PlaneDrawer {
   SplatPlanes<Pixel> draw(SplatDevice* device) {
     m_onDevice = static_cast<const Pixel*>(drawOnDevice(device, m_runs, m_fits, m_levels, m_payload));
     std::vector<Task> tasks = tasksOf(m_runs, m_onDevice != nullptr);
+    shareOut(m_runs, tasks, m_planes.size());
     if (m_levels.count > 1) std::ranges::stable_sort(tasks, {}, [&](const Task& task) { return m_runs[task.run].nearest; });
     std::size_t first = 0;
     if (m_levels.count > 1) {
@@ -215,9 +184,9 @@ class PlaneDrawer {
  private:
   SplatPlanes<Pixel> planes() const {
     SplatPlanes<Pixel> planes;
-    if (m_onDevice) planes.planes.push_back(m_onDevice);
-    for (const auto& block : m_scratch)
-      if (block) planes.planes.push_back(static_cast<const Pixel*>(block->data()));
+    if (m_onDevice) planes.planes.push_back({m_onDevice});
+    for (const auto& plane : m_planes)
+      if (plane) planes.planes.push_back({static_cast<const Pixel*>(plane->pixels()), plane->touched()});
     return planes;
   }
 
@@ -228,30 +197,33 @@ class PlaneDrawer {
         for (std::size_t i = first; i < last; ++i) isHidden[i] = m_hidden->hides(m_runs[tasks[i].run]);
       });
     }
-    std::vector<Task> shown;
+    std::vector<std::vector<Task>> shares(m_planes.size());
     std::vector<std::uint32_t> runs;
     for (std::size_t i = 0; i < tasks.size(); ++i)
-      if (isHidden[i] == 0) shown.push_back(tasks[i]), runs.push_back(tasks[i].run);
+      if (isHidden[i] == 0) shares[tasks[i].share].push_back(tasks[i]), runs.push_back(tasks[i].run);
     m_fits.lay(runs);
-    parallelFor(shown.size(), 1, [&](std::size_t first, std::size_t last, int worker) {
-      const SplatTarget target = targetOf(worker);
-      for (std::size_t i = first; i < last; ++i) drawTask(shown[i], target);
+    // Who is done with his share helps the next with his.
+    std::vector<std::atomic<std::size_t>> next(shares.size());
+    parallelFor(shares.size(), 1, [&](std::size_t first, std::size_t last, int) {
+      for (std::size_t own = first; own < last; ++own) {
+        for (std::size_t k = 0; k < shares.size(); ++k) {
+          const std::size_t from = (own + k) % shares.size();
+          for (std::size_t i = next[from]++; i < shares[from].size(); i = next[from]++) drawTask(shares[from][i], targetOf(own));
+        }
+      }
     });
   }
 
-  SplatTarget targetOf(int worker) {
-    const std::size_t bytes = m_levels.pixels() * sizeof(Pixel);
-    auto& block = m_scratch[static_cast<std::size_t>(worker)];
-    if (!block) {
-      block = std::make_unique<SplatScratch>(bytes);
-      std::memset(block->data(), 0xff, bytes);
-    }
+  SplatTarget targetOf(std::size_t own) {
+    auto& plane = m_planes[own];
+    if (!plane) plane = std::make_unique<SplatPlane>(m_levels.pixels(), sizeof(Pixel));
     SplatTarget target;
     target.payload = m_payload;
+    target.touched = plane->touched();
     if constexpr (sizeof(Pixel) == 4) {
-      target.depth = static_cast<Pixel*>(block->data());
+      target.depth = static_cast<Pixel*>(plane->pixels());
     } else {
-      target.packed = static_cast<Pixel*>(block->data());
+      target.packed = static_cast<Pixel*>(plane->pixels());
     }
     return target;
   }
@@ -267,7 +239,7 @@ class PlaneDrawer {
   bool m_closeHoles;
   SplatLevels m_levels;
   SurfaceFits m_fits;
-  std::vector<std::unique_ptr<SplatScratch>> m_scratch;
+  std::vector<std::unique_ptr<SplatPlane>> m_planes;
   const Pixel* m_onDevice = nullptr;
   std::optional<HiddenTiles> m_hidden;
 };
@@ -281,6 +253,7 @@ void drawPlanes(std::span<SplatRun> runs, int width, int height, const SplatDraw
   parallelFor(static_cast<std::size_t>(height), kRowsPerBand, [&](std::size_t first, std::size_t last, int) {
     merge(planes, drawer.levels(), coarse ? &*coarse : nullptr, static_cast<int>(first), static_cast<int>(last));
   });
+  drawer.clear();
 }
 
 bool inDomain(const void* camera, float x, float y) {
@@ -371,12 +344,6 @@ void chooseReciprocal(SplatView& view, const Bounds& bounds, const RigidTransfor
 }
 
 }  // namespace
-
-SplatScratch::SplatScratch(std::size_t bytes) : m_data(ScratchPool::instance().take(bytes)), m_bytes(bytes) {}
-
-SplatScratch::~SplatScratch() {
-  ScratchPool::instance().giveBack(m_data, m_bytes);
-}
 
 double nearestDepth(const Bounds& bounds, const RigidTransform& cameraFromWorld) {
   return std::max(0.0, depthRange(bounds, cameraFromWorld).first);

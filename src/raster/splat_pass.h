@@ -19,22 +19,6 @@
 
 namespace alidade {
 
-/// A 128-byte aligned block of pixels that is handed back for the next frame: first touch of fresh
-/// memory costs more than drawing into it.
-class SplatScratch {
- public:
-  explicit SplatScratch(std::size_t bytes);
-  ~SplatScratch();
-  SplatScratch(const SplatScratch&) = delete;
-  SplatScratch& operator=(const SplatScratch&) = delete;
-
-  void* data() const { return m_data; }
-
- private:
-  void* m_data = nullptr;
-  std::size_t m_bytes = 0;
-};
-
 /// One selected range ready to draw.
 struct SplatRun {
   const DisplayPoint* points = nullptr;
@@ -78,7 +62,7 @@ struct SplatDrawing {
   bool intoLevels = false;
 };
 
-/// Draws the runs on all cores, one private plane a thread, then has `merge` make the picture of them in
+/// Draws the runs on all cores, one private plane a thread, which draws what lies together in the picture, then has `merge` make the picture of them in
 /// bands of rows [first, last), on all cores too. payload None draws 32-bit pixels and calls the
 /// first; anything else 64-bit ones and the second. A device draws the runs that need no domain check.
 void drawRuns(

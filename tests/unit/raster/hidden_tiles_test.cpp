@@ -26,7 +26,7 @@ LevelSurface wall() {
       if (x % 9 != 4 || y % 7 != 3)
         plane[static_cast<std::size_t>(levels.start[1] + y * levels.columns[1] + x)] = std::bit_cast<std::uint32_t>(5.0f);
   SplatPlanes<std::uint32_t> planes;
-  planes.planes.push_back(plane.data());
+  planes.planes.push_back({plane.data()});
   return *coarseSurface(planes, levels, true, 2, SurfacePayload::None);
 }
 

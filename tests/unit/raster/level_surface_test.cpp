@@ -40,7 +40,7 @@ struct Picture {
 
 Picture merged(const std::vector<std::vector<std::uint64_t>>& planes, bool closeHoles, int rowsAtATime = kHeight) {
   SplatPlanes<std::uint64_t> all;
-  for (const auto& plane : planes) all.planes.push_back(plane.data());
+  for (const auto& plane : planes) all.planes.push_back({plane.data()});
   const SplatLevels levels(kWidth, kHeight, 1);
   Picture picture;
   for (int first = 0; first < kHeight; first += rowsAtATime) {
@@ -248,7 +248,7 @@ TEST(LevelSurface, PointsArePulledUpIntoTheCellsThatTheyLieIn) {
   for (int y = 12; y < 36; y += 3)
     for (int x = 20; x < 44; x += 3) plane[static_cast<std::size_t>(y * 64 + x)] = std::bit_cast<std::uint32_t>(4.0f);
   SplatPlanes<std::uint32_t> planes;
-  planes.planes.push_back(plane.data());
+  planes.planes.push_back({plane.data()});
   const auto surface = coarseSurface(planes, levels, true, 1, SurfacePayload::None);
   int left = 1000, right = -1, top = 1000, bottom = -1;
   for (int y = 0; y < levels.rows[1]; ++y) {
