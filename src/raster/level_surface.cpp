@@ -59,15 +59,16 @@ void SurfaceRows<Pixel>::takeAtMiddles(int y, const SurfaceRow& row) {
       std::fill_n(to.inverse, m_columns, 0.0f);
       continue;
     }
-    const Pixel* pixels = nearestPixels(m_planes, m_start + static_cast<std::size_t>(m_nextFallen) * m_columns, m_columns, m_joined);
-    if (pixels == nullptr) {
-      std::fill_n(to.inverse, m_columns, 0.0f);
-      continue;
-    }
-    if constexpr (sizeof(Pixel) == 8) {
-      surfaceKernel().takePixels(pixels, m_columns, {to.inverse, nullptr});
-      surfaceKernel().takePlaces(pixels, m_columns, to.payload);
-    }
+    takeNearest(m_planes, m_start + static_cast<std::size_t>(m_nextFallen) * m_columns, m_columns, [&](std::size_t first, std::size_t count, const Pixel* pixels) {
+      if constexpr (sizeof(Pixel) == 8) {
+        if (pixels == nullptr) {
+          std::fill_n(to.inverse + first, count, 0.0f);
+        } else {
+          surfaceKernel().takePixels(pixels, count, {to.inverse + first, nullptr});
+          surfaceKernel().takePlaces(pixels, count, to.payload + first);
+        }
+      }
+    });
   }
   surfaceKernel().toMiddles({fallen(y - 1).cells(), fallen(y).cells(), fallen(y + 1).cells()}, m_columns, row.inverse);
 }
@@ -92,17 +93,19 @@ template <class Pixel>
 void SurfaceRows<Pixel>::join(int y) {
   Row& row = at(m_rows, y);
   const bool isInside = y >= 0 && y < m_height;
-  const Pixel* pixels = isInside ? nearestPixels(m_planes, m_start + static_cast<std::size_t>(y) * m_columns, m_columns, m_joined) : nullptr;
   const SurfaceKernel& kernel = surfaceKernel();
-  row.hasCells = pixels != nullptr;
-  if (pixels == nullptr) {
-    std::fill_n(row.row().inverse, m_columns, 0.0f);
-  } else if constexpr (sizeof(Pixel) == 8) {
-    (m_kind == SurfacePayload::Colour ? kernel.takeColours : kernel.takePixels)(pixels, m_columns, row.row());
-    if (m_margin > 0 && m_kind == SurfacePayload::Colour) takeAtMiddles(y, row.row());
-  } else {
-    kernel.takeDepths(pixels, m_columns, row.row().inverse);
-  }
+  const SurfaceRow to = row.row();
+  row.hasCells = isInside && takeNearest(m_planes, m_start + static_cast<std::size_t>(y) * m_columns, m_columns, [&](std::size_t first, std::size_t count, const Pixel* pixels) {
+    if (pixels == nullptr) {
+      std::fill_n(to.inverse + first, count, 0.0f);
+    } else if constexpr (sizeof(Pixel) == 8) {
+      (m_kind == SurfacePayload::Colour ? kernel.takeColours : kernel.takePixels)(pixels, count, {to.inverse + first, to.payload ? to.payload + first : nullptr});
+    } else {
+      kernel.takeDepths(pixels, count, to.inverse + first);
+    }
+  });
+  if (!isInside) std::fill_n(to.inverse, m_columns, 0.0f);
+  if (row.hasCells && m_margin > 0 && m_kind == SurfacePayload::Colour) takeAtMiddles(y, to);
   if (m_coarser && isInside) takeCoarser(y, row);
   row.clearBorders(m_columns);
   if (!m_finer) return;

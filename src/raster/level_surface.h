@@ -89,7 +89,6 @@ class SurfaceRows {
   Rows m_rows, m_withFiner;
   Row m_closed;
   bool m_hasCells = false;
-  std::vector<Pixel> m_joined;
   /// Of a coarser level with colours: inverse depths where the points fell, and their places in their cells, of three rows.
   Row m_fallen[3];
   int m_nextFallen = -1;

@@ -66,18 +66,18 @@ DotImage drawDots(const std::vector<SplatLayer>& layers, const Camera& camera,
   DotImage dots(camera.width(), camera.height());
   const auto merge = [&](const SplatPlanes<std::uint64_t>& planes, const SplatLevels&, const LevelSurface*, int first, int last) {
     const auto width = static_cast<std::size_t>(camera.width());
-    std::vector<std::uint64_t> joined;
     for (int y = first; y < last; ++y) {
-      const std::uint64_t* pixels = nearestPixels(planes, static_cast<std::size_t>(y) * width, width, joined);
-      if (pixels == nullptr) continue;
-      for (int x = 0; x < camera.width(); ++x) {
-        const float z = std::bit_cast<float>(static_cast<std::uint32_t>(pixels[x] >> 32));
-        if (!(z > 0.0f)) continue;
-        dots.inverseDepth.at(x, y) = 1.0f / z;
-        const auto payload = static_cast<std::uint32_t>(pixels[x]);
-        dots.spacingPx.at(x, y) = decodedSpacing(payload) / z;
-        dots.place.at(x, y) = static_cast<std::uint16_t>(payload & ((1u << PlaceInPixel::kBits) - 1));
-      }
+      takeNearest(planes, static_cast<std::size_t>(y) * width, width, [&](std::size_t at, std::size_t count, const std::uint64_t* pixels) {
+        for (std::size_t i = 0; pixels != nullptr && i < count; ++i) {
+          const float z = std::bit_cast<float>(static_cast<std::uint32_t>(pixels[i] >> 32));
+          if (!(z > 0.0f)) continue;
+          const int x = static_cast<int>(at + i);
+          dots.inverseDepth.at(x, y) = 1.0f / z;
+          const auto payload = static_cast<std::uint32_t>(pixels[i]);
+          dots.spacingPx.at(x, y) = decodedSpacing(payload) / z;
+          dots.place.at(x, y) = static_cast<std::uint16_t>(payload & ((1u << PlaceInPixel::kBits) - 1));
+        }
+      });
     }
   };
   drawRuns(runs, camera.width(), camera.height(), {.payload = SplatPayload::Place}, {}, merge);

@@ -22,6 +22,7 @@ SelectionOptions selectionOptions(const DisplaySettings& display, const PointVie
   options.pointsPerSquareMetre = display.pointsPerSquareMetre;
   // By point only what is drawn is cut, once it is styled.
   options.threshold = display.levelThreshold == LevelThreshold::Uniform ? LevelThreshold::Uniform : LevelThreshold::ByDistance;
+  options.byFacing = display.levelThreshold == LevelThreshold::ByDistance;  // cutByPoint() looks at distances alone
   return options;
 }
 

@@ -26,24 +26,26 @@ ALIDADE_LENS_INLINE Ints levelOf(const Floats& width, int count) {
   return atLeast < last ? atLeast : last;
 }
 
+/// Where a point falls: floor(256 u) and floor(256 v) from the picture's first corner on.
+struct FinePlace {
+  Ints u, v;
+};
+
 template <bool packed>
-ALIDADE_LENS_INLINE void drawIntoLevel(const SplatLevels& levels, const Ints& level, const Ints& column, const Ints& row, Lanes drawn,
-                                       const Words& depth, const Words& payload, const Floats& u, const Floats& v, bool hasPlaces, PixelQueue<packed>& queue) {
-  const Ints margin = level > 0 ? Ints{} + SplatLevels::kMargin : Ints{};
-  const Ints x = (column >> level) + margin, y = (row >> level) + margin;
+ALIDADE_LENS_INLINE void drawIntoLevel(const SplatLevels& levels, const Ints& level, const FinePlace& fine, Lanes drawn,
+                                       const Words& depth, const Words& payload, bool hasPlaces, PixelQueue<packed>& queue) {
+  const Ints isCoarse = level > 0;
+  const Ints margin = isCoarse & SplatLevels::kMargin;
+  const Ints u = fine.u >> level, v = fine.v >> level;  // in 256ths of a cell
+  const Ints x = (u >> 8) + margin, y = (v >> 8) + margin;
   const Ints columns = lookUp(levels.columns, level), rows = lookUp(levels.rows, level);
   const Ints inside = (reinterpret_cast<Words>(x) < reinterpret_cast<Words>(columns)) & (reinterpret_cast<Words>(y) < reinterpret_cast<Words>(rows));
   const Ints at = y * columns + x + lookUp(levels.start, level);
   Words carried = payload;
-  const Ints isCoarse = level > 0;
-  if (packed && hasPlaces && lanesOf(isCoarse) != 0) {
-    // 256 / 2^level, by its exponent.
-    const Floats steps = reinterpret_cast<Floats>((127 + 8 - level) << 23);
-    const Ints inU = __builtin_convertvector((u - __builtin_convertvector(column - (column & ((1 << level) - 1)), Floats)) * steps, Ints);
-    const Ints inV = __builtin_convertvector((v - __builtin_convertvector(row - (row & ((1 << level) - 1)), Floats)) * steps, Ints);
-    // A coordinate may round to the cell's far border. Never all ones: that is an empty payload.
-    const Ints placeU = inU < 255 ? inU : Ints{} + 255, placeV = inV < 254 ? inV : Ints{} + 254;
-    carried |= reinterpret_cast<Words>(isCoarse & ((placeU & 255) | (placeV & 255) << 8) << PlaceInCell::kColourBits);
+  if (packed && hasPlaces) {
+    const Ints inU = u & 255, inV = v & 255;
+    const Ints placeV = inV < 254 ? inV : Ints{} + 254;  // never all ones: that is an empty payload
+    carried |= reinterpret_cast<Words>(isCoarse & (inU | placeV << 8) << PlaceInCell::kColourBits);
   }
   queue.add(drawn & lanesOf(inside), at, depth, carried);
 }
@@ -51,18 +53,17 @@ ALIDADE_LENS_INLINE void drawIntoLevel(const SplatLevels& levels, const Ints& le
 template <bool packed>
 ALIDADE_LENS_INLINE void drawLevels(const SplatView& view, const Projected& p, PixelQueue<packed>& queue,
                                     const SplatTarget& target, std::uint32_t place) {
-  const Floats u = p.u + 0.5f, v = p.v + 0.5f;
-  const Ints column = floorOf(u), row = floorOf(v);
   const Lanes valid = lanesOf(p.valid);
   if (valid == 0) return;
+  const FinePlace fine{floorOf(256.0f * (p.u + 0.5f)), floorOf(256.0f * (p.v + 0.5f))};
   const Floats wanted = view.sizeTimesDepth * p.inverse;
   const Ints level = levelOf(wanted < view.largest ? wanted : Floats{} + view.largest, view.levels->count);
   const Words depth = reinterpret_cast<Words>(p.z);
   const Words payload = payloadOf(target, place, p.colour);
   const bool hasPlaces = target.payload == SplatPayload::Colour;
-  drawIntoLevel<packed>(*view.levels, level, column, row, valid, depth, payload, u, v, hasPlaces, queue);
+  drawIntoLevel<packed>(*view.levels, level, fine, valid, depth, payload, hasPlaces, queue);
   const Lanes coarse = valid & lanesOf(level > 0);
-  if (coarse != 0) drawIntoLevel<packed>(*view.levels, level > 0 ? level - 1 : Ints{}, column, row, coarse, depth, payload, u, v, hasPlaces, queue);
+  if (coarse != 0) drawIntoLevel<packed>(*view.levels, level > 0 ? level - 1 : Ints{}, fine, coarse, depth, payload, hasPlaces, queue);
 }
 
 }  // namespace

@@ -3,9 +3,12 @@
 
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
+
+#include "raster/splat_plane.h"
 
 namespace alidade {
 
@@ -23,12 +26,43 @@ struct SplatPlanes {
   std::vector<SplatPixels<Pixel>> planes;
 };
 
-/// Of each of the pixels [first, first + count) the nearest of all planes; in `joined`, or where a plane alone has them. Null where
-/// nothing was drawn.
-template <class Pixel>
-const Pixel* nearestPixels(const SplatPlanes<Pixel>& planes, std::size_t first, std::size_t count, std::vector<Pixel>& joined);
+/// The lesser of a's and b's pixels into a.
+void keepNearest(std::uint64_t* a, const std::uint64_t* b, std::size_t count);
+void keepNearest(std::uint32_t* a, const std::uint32_t* b, std::size_t count);
 
-extern template const std::uint32_t* nearestPixels(const SplatPlanes<std::uint32_t>&, std::size_t, std::size_t, std::vector<std::uint32_t>&);
-extern template const std::uint64_t* nearestPixels(const SplatPlanes<std::uint64_t>&, std::size_t, std::size_t, std::vector<std::uint64_t>&);
+/// Of each of the pixels [first, first + count) the nearest of all planes, stretch by stretch in ascending order: take(at, n, pixels) for
+/// those of [first + at, first + at + n), null where nothing was drawn. False if nothing was drawn in any.
+template <class Pixel, class Take>
+bool takeNearest(const SplatPlanes<Pixel>& all, std::size_t first, std::size_t count, const Take& take) {
+  const std::size_t end = first + count;
+  const auto endOfPiece = [&](std::size_t at) { return std::min(end, ((at >> SplatPlane::kPieceBits) + 1) << SplatPlane::kPieceBits); };
+  /// The only plane, if any, that was drawn into; how many were.
+  const auto drawnAt = [&](std::size_t at, const SplatPixels<Pixel>*& only) {
+    int drawn = 0;
+    only = nullptr;
+    for (const SplatPixels<Pixel>& plane : all.planes)
+      if (plane.touched == nullptr || plane.touched[at >> SplatPlane::kPieceBits] != 0) ++drawn, only = &plane;
+    return drawn;
+  };
+  bool hasAny = false;
+  for (std::size_t from = first; from < end;) {
+    const SplatPixels<Pixel>*only = nullptr, *next = nullptr;
+    const int drawn = drawnAt(from, only);
+    std::size_t to = endOfPiece(from);
+    hasAny |= drawn > 0;
+    if (drawn > 1) {
+      Pixel nearest[SplatPlane::kPiece];
+      std::fill_n(nearest, to - from, static_cast<Pixel>(-1));
+      for (const SplatPixels<Pixel>& plane : all.planes)
+        if (plane.touched == nullptr || plane.touched[from >> SplatPlane::kPieceBits] != 0) keepNearest(nearest, plane.pixels + from, to - from);
+      take(from - first, to - from, static_cast<const Pixel*>(nearest));
+    } else {
+      while (to < end && drawnAt(to, next) == drawn && next == only) to = endOfPiece(to);
+      take(from - first, to - from, drawn > 0 ? only->pixels + from : nullptr);
+    }
+    from = to;
+  }
+  return hasAny;
+}
 
 }  // namespace alidade

@@ -137,16 +137,24 @@ class PixelQueue {
     for (int i = 0; i < kLanes; ++i)
       if (chosen >> i & 1) put<packed>(m_target, at[i], depth[i], payload[i]);
 #else
-    pack(m_at + m_count, chosen, reinterpret_cast<Words>(at));
-    pack(m_depth + m_count, chosen, depth);
-    if constexpr (packed) pack(m_payload + m_count, chosen, payload);
-    m_count += static_cast<unsigned>(__builtin_popcount(chosen));
+    if (chosen == kAllLanes) {  // as nearly always
+      store(m_at + m_count, reinterpret_cast<Words>(at));
+      store(m_depth + m_count, depth);
+      if constexpr (packed) store(m_payload + m_count, payload);
+      m_count += kLanes;
+    } else {
+      pack(m_at + m_count, chosen, reinterpret_cast<Words>(at));
+      pack(m_depth + m_count, chosen, depth);
+      if constexpr (packed) pack(m_payload + m_count, chosen, payload);
+      m_count += static_cast<unsigned>(__builtin_popcount(chosen));
+    }
     if (m_count >= kHeld) drain();
 #endif
   }
 
  private:
   static constexpr unsigned kHeld = 512;
+  static constexpr auto kAllLanes = static_cast<Lanes>((1u << kLanes) - 1);
 
 #if ALIDADE_SPLAT_LANES == 4
   void drain() {}
@@ -156,6 +164,8 @@ class PixelQueue {
     std::memcpy(&words, from, sizeof words);
     return words;
   }
+
+  ALIDADE_LENS_INLINE static void store(std::uint32_t* to, const Words& words) { std::memcpy(to, &words, sizeof words); }
 
   ALIDADE_LENS_INLINE Lanes candidates(const Ints& at, const Words& depth, Lanes inside) const {
     if constexpr (packed) {  // the depth is the pixel's upper half
