@@ -103,6 +103,9 @@ struct Pending {
   std::uint32_t node;
 };
 
+/// More than this tell no more of how flat a node is.
+constexpr std::size_t kPlacesOfSlab = 256;
+
 /// Appends `kept` to the tree as the node's points, sorted by level step, and its table.
 void settle(BuildNode& node, std::span<const std::uint32_t> kept, const CellPoints& points, SubTree& tree) {
   node.first = tree.order.size();
@@ -128,6 +131,14 @@ void settle(BuildNode& node, std::span<const std::uint32_t> kept, const CellPoin
   tree.tables.insert(tree.tables.end(), next.begin() + 1, next.end());
   tree.order.resize(node.first + kept.size());
   for (const std::uint32_t i : kept) tree.order[node.first + next[static_cast<std::size_t>(points.level[i] - low)]++] = i;
+  // The coarsest lie evenly over all of it.
+  std::array<glm::vec3, kPlacesOfSlab> coarsest;
+  const std::size_t count = std::min(coarsest.size(), kept.size());
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::uint32_t i = tree.order[node.first + k];
+    coarsest[k] = glm::vec3(x[i], y[i], z[i]);
+  }
+  node.slab = slabOf({coarsest.data(), count});
 }
 
 glm::ivec3 cornerOf(std::uint64_t code, int depth) {

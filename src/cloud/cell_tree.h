@@ -13,6 +13,7 @@
 #include "cloud/blue_noise.h"
 #include "cloud/chunk_plan.h"
 #include "cloud/levels.h"
+#include "cloud/node_slab.h"
 #include "cloud/raw_bytes.h"
 
 namespace alidade {
@@ -45,6 +46,7 @@ struct BuildNode {
   std::uint32_t childCount = 0;
   glm::i64vec3 low{0}, high{-1};        ///< units: of the points in it and below; low > high where none
   std::uint64_t pointsBelow = 0;        ///< with its own
+  NodeSlab slab;                        ///< of its own points, units in the tile
   float spacingUnits = 0;               ///< side of a square of surface that holds one point; 0: unknown
 
   bool hasBounds() const { return low.x <= high.x; }

@@ -16,6 +16,7 @@
 #include "cloud/cell_tree.h"
 #include "cloud/lattice.h"
 #include "cloud/levels.h"
+#include "cloud/node_slab.h"
 #include "cloud/point_schema.h"
 #include "geometry/bounds.h"
 #include "survey/point_batch.h"
@@ -50,6 +51,7 @@ struct CloudNode {
   /// Metres between neighbours here when every level is drawn: the side of a square of surface that
   /// holds one point.
   double spacing = 0;
+  NodeSlab slab;  ///< of the node's own points: metres from origin
 };
 
 /// How a node's points spread over the levels: entry i of `cumulative` counts those below level step

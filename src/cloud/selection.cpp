@@ -40,14 +40,20 @@ class Cuts {
                      options.targetSpacingPx > 0),
         m_levelAtOneMetre(m_byDistance ? store.levelOfSpacing(options.targetSpacingPx / m_focal) : 0) {}
 
+  /// How much of its area the node shows to the eye where that counts, else 1.
+  double facingOf(const CloudNode& node, const glm::dvec3& eye, double squaredDistance) const {
+    if (!m_options.byFacing || m_options.law != DensityLaw::PointsPerPixel || m_options.threshold != LevelThreshold::ByDistance) return 1.0;
+    return alidade::facingOf(node.slab, eye - node.origin, std::sqrt(squaredDistance));
+  }
+
   /// The level step at which a node is cut.
-  std::int32_t stepOf(const CloudNode& node, double squaredDistance) const {
+  std::int32_t stepOf(const CloudNode& node, double squaredDistance, double facing) const {
     if (m_byDistance) {
       // The usual law, without its roots: the level falls by one where the distance doubles.
       if (!(squaredDistance > 0)) return kEveryStep;
-      return alidade::stepOf(m_levelAtOneMetre - 0.5 * std::log2(squaredDistance));
+      return alidade::stepOf(m_levelAtOneMetre - 0.5 * std::log2(squaredDistance / facing));
     }
-    const double wanted = spacingAt(std::sqrt(squaredDistance));
+    const double wanted = spacingAt(std::sqrt(squaredDistance)) / std::sqrt(facing);
     if (!(wanted > 0)) return kEveryStep;
     if (m_store.levelKind() == LevelKind::BlueNoise) return alidade::stepOf(m_store.levelOfSpacing(wanted));
     // Coinciding points tell no spacing; they are drawn rather than lost.
@@ -96,12 +102,15 @@ void addVisible(const PointStore& store, std::uint32_t storeIndex, const ViewPyr
     if (visit.planes != 0) visit.planes = view.cutBy(node.bounds, visit.planes);
     if (visit.planes == ViewPyramid::kOutside) continue;
     const double squaredDistance = view.squaredDistanceTo(node.bounds);
-    const std::int32_t step = cuts == nullptr ? kEveryStep : cuts->stepOf(node, squaredDistance);
-    // What lies below is no nearer and of no lower level.
-    if (store.levelKind() == LevelKind::BlueNoise && step <= store.lowestStepBelow(index)) continue;
+    // What lies below is no nearer and of no lower level, but may face the eye more.
+    const std::int32_t facingStep = cuts == nullptr ? kEveryStep : cuts->stepOf(node, squaredDistance, 1.0);
+    if (store.levelKind() == LevelKind::BlueNoise && facingStep <= store.lowestStepBelow(index)) continue;
     // No deeper than there are points here: all of it is thinned from the first step of the slider on.
     const std::int32_t deepest = store.highestStepBelow(index);
-    if (node.count > 0) found.push_back({storeIndex, index, static_cast<float>(squaredDistance), std::min(step, deepest)});
+    if (node.count > 0) {
+      const std::int32_t step = cuts == nullptr ? kEveryStep : cuts->stepOf(node, squaredDistance, cuts->facingOf(node, view.eye(), squaredDistance));
+      found.push_back({storeIndex, index, static_cast<float>(squaredDistance), std::min(step, deepest)});
+    }
     for (std::uint32_t c = 0; c < node.childCount; ++c) stack.push_back({static_cast<std::uint32_t>(node.firstChild) + c, visit.planes});
   }
 }

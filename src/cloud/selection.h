@@ -41,6 +41,9 @@ struct SelectionOptions {
   LevelThreshold threshold = LevelThreshold::ByDistance;
   double pointsPerSquareMetre = 150000.0;
   double targetSpacingPx = 1.0;  ///< wanted distance between neighbours on screen at density 1: a point a pixel
+  /// Points per pixel by distance: fewer of them where a surface is seen at an angle, and so as many on screen. A's laws and
+  /// thresholds (Zhang 2020) know the distance alone.
+  bool byFacing = true;
   std::uint64_t pointBudget = 0;  ///< over all stores; 0: none
 };
 
@@ -51,8 +54,11 @@ struct SelectionOptions {
 /// At density 1 a node is drawn down to the level l1 whose spacing is, at the distance d from the eye to the
 /// node's nearest point,
 ///
-///     points per pixel          w = targetSpacingPx d / f
+///     points per pixel          w = targetSpacingPx d / (f sqrt(c))
 ///     points per square metre   w = sqrt(ln(d + 1) / D)                  (Zhang 2020)
+///
+/// where c is the share of its area that the node's surface shows to the eye (facingOf(), in cloud/node_slab.h), 1 where byFacing does not
+/// hold.
 ///
 /// For blue noise l1 follows from w alone; for random levels it is the level below which the share
 /// (spacing / w)² of the node's surroundings lies. The slider and the budget lower all of a view's levels by
@@ -63,7 +69,7 @@ std::vector<Selection> select(std::span<const std::shared_ptr<const PointStore>>
 Selection select(const PointStore& store, const Camera& camera, const RigidTransform& cameraFromWorld,
                  const SelectionOptions& options);
 
-/// What LevelThreshold::ByPoint leaves of the prefixes that ByDistance chose with the same options for the same camera: ranges draw
+/// What LevelThreshold::ByPoint leaves of the prefixes that ByDistance chose without byFacing, with options otherwise the same: ranges draw
 /// copies of the points that their own distance wants. A PointStyler's ranges stay as they are coloured and filtered,
 /// and may change again after this. Costs a pass over the points in view. select() with ByPoint does both.
 void cutByPoint(const PointStore& store, const Camera& camera, const RigidTransform& cameraFromWorld,

@@ -42,6 +42,9 @@ PointStoreData storeDataOf(const PartTree& part) {
     node.first = built.first;
     node.count = built.count;
     node.spacing = built.spacingUnits * part.lattice.step;
+    node.slab = built.slab;
+    node.slab.along = static_cast<float>(built.slab.along * part.lattice.step);
+    node.slab.thickness = static_cast<float>(built.slab.thickness * part.lattice.step);
     data.nodes.push_back(node);
     data.places.push_back(place);
   }
@@ -59,7 +62,7 @@ std::vector<std::byte> packNodes(const PointStoreData& data) {
     out.put(node.origin), out.put(node.step), out.put(node.size), out.put(node.bounds.min), out.put(node.bounds.max);
     out.put(node.depth), out.put(node.firstChild), out.put(node.childCount), out.put(node.count), out.put(place.firstStep);
     out.put(node.first), out.put(node.spacing), out.put(place.corner);
-    out.put(place.stepCount), out.put(place.tableOffset);
+    out.put(place.stepCount), out.put(place.tableOffset), out.put(node.slab);
   }
   return std::move(out.bytes);
 }
@@ -77,6 +80,7 @@ void unpackNodes(std::span<const std::byte> bytes, PointStoreData& data) {
     node.count = in.get<std::uint32_t>(), place.firstStep = in.get<std::int32_t>();
     node.first = in.get<std::uint64_t>(), node.spacing = in.get<double>(), place.corner = in.get<glm::i64vec3>();
     place.stepCount = in.get<std::uint32_t>(), place.tableOffset = in.get<std::uint64_t>();
+    node.slab = in.get<NodeSlab>();
   }
 }
 
@@ -86,12 +90,16 @@ bool isFinite(const glm::dvec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
+bool isSoundSlab(const NodeSlab& slab) {
+  return isFinite(slab.normal) && std::isfinite(slab.along) && slab.thickness >= 0 && std::isfinite(slab.thickness) && slab.roughness >= 0 && slab.roughness <= 1;
+}
+
 bool isSoundNode(const CloudNode& node, const PointStoreData::NodePlace& place, const PointStoreData& data) {
   constexpr std::int64_t kFarthest = std::int64_t{1} << 60;
   constexpr std::int32_t kMostSteps = 1 << 16;
   constexpr std::uint32_t kDeepest = 256;
   if (!isFinite(node.origin) || !std::isfinite(node.step) || !(node.step > 0) || !std::isfinite(node.size) || !std::isfinite(node.spacing) ||
-      node.depth > kDeepest)
+      node.depth > kDeepest || !isSoundSlab(node.slab))
     return false;
   if (!node.bounds.empty() && !(isFinite(node.bounds.min) && isFinite(node.bounds.max))) return false;
   for (int axis = 0; axis < 3; ++axis)

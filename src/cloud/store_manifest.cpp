@@ -21,7 +21,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr int kVersion = 1;
+constexpr int kVersion = 2;
 constexpr std::uint64_t kMostPoints = std::uint64_t{1} << 48, kMostManifestBytes = std::uint64_t{1} << 28;
 
 /// By NumberType.

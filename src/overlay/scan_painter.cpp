@@ -20,6 +20,7 @@ namespace {
 SelectionOptions judgingOptions(std::uint64_t budget) {
   SelectionOptions options;
   options.targetSpacingPx = 0.5;
+  options.byFacing = false;  // gaps between dots are judged by their spacing, whichever way it is seen
   options.pointBudget = budget;
   return options;
 }

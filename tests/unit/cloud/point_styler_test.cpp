@@ -122,6 +122,7 @@ TEST(PointStyler, WhatIsStyledCanBeCutPointByPoint) {
   const Camera camera(*Intrinsics::fromParameters(CameraModel::Pinhole, 320, 240, {60, 60, 159.5, 119.5}));
   const auto pose = RigidTransform::cameraLookingAt({402005, 5655003, 114}, {402007, 5655006, 112});
   SelectionOptions options;
+  options.byFacing = false;
   const Selection prefixes = select(*store, camera, pose, options);
   options.threshold = LevelThreshold::ByPoint;
   const Selection plain = select(*store, camera, pose, options);

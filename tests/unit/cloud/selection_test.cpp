@@ -126,6 +126,31 @@ TEST(Selection, ReachesTheWantedSpacingOnScreen) {
   }
 }
 
+TEST(Selection, ASurfaceSeenAtAnAngleGetsAsManyPointsAPixel) {
+  // A wall 10 m away, points 2 mm apart, turned by some degrees about the vertical.
+  for (const double degrees : {30.0, 45.0, 60.0}) {
+    const double c = std::cos(degrees * M_PI / 180), s = std::sin(degrees * M_PI / 180);
+    PointBatch batch;
+    std::mt19937 random(2);
+    std::uniform_real_distribution<double> side(-1.0, 1.0);
+    for (int i = 0; i < 1'000'000; ++i) {
+      const double along = side(random);
+      batch.position.push_back({along * c, 10.0 + along * s, side(random)});
+    }
+    const auto store = storeFrom(batch);
+    const Camera camera = pinhole(400, 400, 700);
+    const auto pose = RigidTransform::cameraLookingAt({0, 0, 0}, {0, 10, 0});
+    const double pixels = 140.0 * 140.0 * c;
+    const auto perPixel = [&](const SelectionOptions& options) { return static_cast<double>(select(*store, camera, pose, options).pointCount) / pixels; };
+    // By the nearest of each node and with what its roughness may show: rather more than too few.
+    EXPECT_GT(perPixel({}), 0.9) << degrees;
+    EXPECT_LT(perPixel({}), 1.5) << degrees;
+    EXPECT_NEAR(perPixel({.byFacing = false}) * c, 1.0, 0.2) << degrees;
+    SelectionOptions byPoint{.threshold = LevelThreshold::ByPoint};
+    EXPECT_NEAR(perPixel(byPoint) * c, 1.0, 0.2) << degrees;
+  }
+}
+
 TEST(Selection, FollowsTheLawOfZhang) {
   PointBatch batch;
   std::mt19937 random(2);
@@ -225,6 +250,7 @@ TEST(Selection, ByPointDrawsWhatTheNodesPrefixesHoldAndNoMore) {
   const auto store = storeFrom(unevenRoom(300'000), 5000);
   const Camera camera = pinhole(960, 540, 700);
   SelectionOptions options, byPoint;
+  options.byFacing = false;
   byPoint.threshold = LevelThreshold::ByPoint;
   std::uint64_t before = 0;
   for (const double density : {0.1, 0.3, 0.6, 1.0}) {

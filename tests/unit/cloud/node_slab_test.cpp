@@ -1,0 +1,57 @@
+// SPDX-FileCopyrightText: 2026 the Alidade authors
+// SPDX-License-Identifier: BSD-3-Clause
+
+#include "cloud/node_slab.h"
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace alidade {
+namespace {
+
+/// 2000 places in a box of this size, turned so that its third axis is `normal`.
+std::vector<glm::vec3> boxOf(const glm::dvec3& size, const glm::dvec3& normal, const glm::dvec3& middle) {
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> side(-0.5, 0.5);
+  const glm::dvec3 u = glm::normalize(glm::cross(normal, glm::dvec3(0.3, -0.8, 0.5))), v = glm::cross(normal, u);
+  std::vector<glm::vec3> places;
+  for (int i = 0; i < 2000; ++i)
+    places.push_back(glm::vec3(middle + side(random) * size.x * u + side(random) * size.y * v + side(random) * size.z * normal));
+  return places;
+}
+
+TEST(NodeSlab, IsThatOfTheBoxThatThePlacesFillEvenly) {
+  const glm::dvec3 normal = glm::normalize(glm::dvec3(1, 2, -2)), middle(30, -20, 10);
+  const NodeSlab slab = slabOf(boxOf({4, 6, 0.3}, normal, middle));
+  EXPECT_GT(std::abs(glm::dot(glm::dvec3(slab.normal), normal)), 0.9999);
+  EXPECT_NEAR(slab.along, glm::dot(glm::dvec3(slab.normal), middle), 0.01);
+  EXPECT_NEAR(slab.thickness, 4 * 0.3 / std::sqrt(12.0), 0.02);
+  EXPECT_NEAR(slab.roughness, 4 * 0.3 / std::sqrt(12.0) / 4.0, 0.005);
+}
+
+TEST(NodeSlab, AFlatSurfaceShowsTheCosineOfItsAngle) {
+  const NodeSlab slab = slabOf(boxOf({0.2, 0.2, 0}, {0, 0, 1}, {0, 0, 0}));
+  for (const double degrees : {90.0, 60.0, 30.0, 20.0}) {
+    const double angle = degrees * M_PI / 180;
+    const glm::dvec3 eye(50 * std::cos(angle), 0, 50 * std::sin(angle));
+    EXPECT_NEAR(facingOf(slab, eye, 50.0), std::sin(angle), 0.01) << degrees;
+    EXPECT_NEAR(facingOf(slab, -eye, 50.0), std::sin(angle), 0.01) << "from below, " << degrees;
+  }
+  EXPECT_EQ(facingOf(slab, {50, 0, 0.5}, 50.0), kLeastFacing);
+}
+
+TEST(NodeSlab, WhatIsNotFlatOrNotKnownShowsAll) {
+  EXPECT_EQ(facingOf(slabOf(boxOf({1, 1, 1}, {0, 0, 1}, {0, 0, 0})), {50, 0, 0.5}, 50.0), 1.0);
+  EXPECT_EQ(facingOf(slabOf(boxOf({5, 0.1, 0.1}, {0, 0, 1}, {0, 0, 0})), {0, 50, 0.5}, 50.0), 1.0);
+  const std::vector<glm::vec3> few(3, glm::vec3(1));
+  EXPECT_EQ(facingOf(slabOf(few), {50, 0, 0.5}, 50.0), 1.0);
+  EXPECT_EQ(facingOf(slabOf({}), {50, 0, 0.5}, 50.0), 1.0);
+  const std::vector<glm::vec3> oneAbove(100, glm::vec3(1));
+  EXPECT_EQ(facingOf(slabOf(oneAbove), {1, 1, 1}, 0.0), 1.0);
+}
+
+}  // namespace
+}  // namespace alidade
