@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <condition_variable>
+#include <map>
 #include <mutex>
 #include <new>
 #include <thread>
+#include <utility>
 
 namespace alidade {
 
@@ -16,6 +18,7 @@ Result<void> OrderedWork::run(const Progress& progress) const {
   std::condition_variable changed;
   std::size_t taken = 0, started = 0, placed = 0;
   std::uint64_t atWork = 0;
+  std::map<std::size_t, Built> waiting;  ///< built, not yet placed: by rank
   Result<void> outcome;
   bool stopped = false;
   const auto stop = [&](const Error& error) {
@@ -25,7 +28,7 @@ Result<void> OrderedWork::run(const Progress& progress) const {
     changed.notify_all();
   };
   const auto work = [&] {
-    const Worker worker = start();
+    const Build build = start();
     for (;;) {
       std::unique_lock lock(mutex);
       if (stopped || taken >= order.size()) return;
@@ -45,21 +48,22 @@ Result<void> OrderedWork::run(const Progress& progress) const {
       changed.notify_all();
 
       if (progress.cancelled()) return stop(cancelledError());
-      if (auto built = worker.build(item); !built) return stop(built.error());
+      auto built = build(item);
+      if (!built) return stop(built.error());
       lock.lock();
-      changed.wait(lock, [&] { return stopped || placed == rank; });
-      if (stopped) return;
-      worker.place(item);
-      ++placed;
-      lock.unlock();
-      changed.notify_all();
-      if (auto done = worker.finish(item); !done) return stop(done.error());
-      lock.lock();
-      (*finished)[item] = 1;
-      atWork -= itemCost;
-      progress.report(static_cast<double>(placed) / static_cast<double>(order.size()), "Building the point store");
-      lock.unlock();
-      changed.notify_all();
+      waiting.emplace(rank, std::move(*built));
+      while (!stopped && !waiting.empty() && waiting.begin()->first == placed) {
+        const std::uint32_t next = order[placed++];
+        const Built turn = std::move(waiting.extract(waiting.begin()).mapped());
+        turn.place();
+        lock.unlock();
+        if (auto done = turn.finish(); !done) return stop(done.error());
+        lock.lock();
+        (*finished)[next] = 1;
+        atWork -= cost(next);
+        progress.report(static_cast<double>(placed) / static_cast<double>(order.size()), "Building the point store");
+        changed.notify_all();
+      }
     }
   };
   const auto guarded = [&] {

@@ -261,8 +261,8 @@ void PartStages::Output::clear() {
   cells.clear();
 }
 
-Result<void> PartStages::buildStream(std::uint32_t stream, Workshop& shop) {
-  auto& [noise, keys, points, records, packed, output] = shop;
+Result<void> PartStages::buildStream(std::uint32_t stream, Workshop& shop, Output& output) {
+  auto& [noise, keys, points, records, packed] = shop;
   output.clear();
   output.columns.resize(columnCount());
   auto loaded = m_streams->load(m_usedStreams[stream]);
@@ -324,9 +324,7 @@ Result<void> PartStages::buildStream(std::uint32_t stream, Workshop& shop) {
   return {};
 }
 
-Result<void> PartStages::buildTile(std::uint32_t t, Workshop& shop) {
-  Output& output = shop.output;
-  output.clear();
+Result<void> PartStages::buildTile(std::uint32_t t, Output& output) {
   output.columns.resize(columnCount());
   Tile& tile = m_tiles[t];
   if (!tile.isCut) return {};
@@ -359,7 +357,8 @@ Result<void> PartStages::buildTile(std::uint32_t t, Workshop& shop) {
     for (const std::uint32_t n : m_tileOrder.before[t])
       if (m_tiles[n].isCut) addObstacles({m_tiles[n].tile, 0, {}}, m_tiles[n].borders, whole, kCoarsestPass, obstacles);
   }
-  assignTopLevels(tile.tile, top, obstacles, m_tree, shop.noise);
+  BlueNoise noise;
+  assignTopLevels(tile.tile, top, obstacles, m_tree, noise);
   if (m_tree.kind == LevelKind::BlueNoise) tile.borders = borderSamples(whole, top.points, {});
   CellDone done;
   emit(output, buildTopTree(tile.tile, cells, top), bytes.empty() ? nullptr : bytes.data() + kTopHeader, each, top.points.row, done);
@@ -384,14 +383,40 @@ Result<void> PartStages::commit(Output& output, const Offsets& at) {
   return {};
 }
 
+PartStages::Offsets PartStages::place(const Output& output) {
+  const Offsets at = m_next;
+  m_next.points += output.points;
+  m_next.tables += output.columns[PartSink::kTables].size() / sizeof(std::uint32_t);
+  m_next.tops += output.columns[PartSink::kTops].size();
+  return at;
+}
+
+class PartStages::Shelf {
+ public:
+  struct Item {
+    Output output;
+    Offsets at;
+  };
+  std::shared_ptr<Item> take() {
+    std::lock_guard lock(m_mutex);
+    if (m_items.empty()) return std::make_shared<Item>();
+    auto item = std::move(m_items.back());
+    m_items.pop_back();
+    return item;
+  }
+  void giveBack(std::shared_ptr<Item> item) {
+    std::lock_guard lock(m_mutex);
+    m_items.push_back(std::move(item));
+  }
+
+ private:
+  std::mutex m_mutex;
+  std::vector<std::shared_ptr<Item>> m_items;
+};
+
 Result<PartTree> PartStages::run(const Progress& progress) {
   std::mutex noteMutex, bordersMutex;
-  const auto place = [this](const Output& output, Offsets& at) {
-    at = m_next;
-    m_next.points += output.points;
-    m_next.tables += output.columns[PartSink::kTables].size() / sizeof(std::uint32_t);
-    m_next.tops += output.columns[PartSink::kTops].size();
-  };
+  Shelf shelf;
   OrderedWork work;
   work.threads = m_options.threads;
   // Half of the memory: the rest is for what stays, and for what a heap never gives back.
@@ -406,37 +431,33 @@ Result<PartTree> PartStages::run(const Progress& progress) {
   work.before = [this](std::uint32_t s) { return std::span<const std::uint32_t>(m_streamOrder.before[s]); };
   work.cost = [this](std::uint32_t s) { return costOf(s); };
   work.finished = &m_streamDone;
-  work.start = [&] {
-    struct State {
-      Workshop shop;
-      Offsets at;
-    };
-    auto state = std::make_shared<State>();
-    OrderedWork::Worker worker;
-    worker.build = [this, state](std::uint32_t s) -> Result<void> {
-      if (auto built = buildStream(s, state->shop); !built) return built;
-      m_streams->release(m_usedStreams[s]);
-      return {};
-    };
-    worker.place = [state, &place](std::uint32_t) { place(state->shop.output, state->at); };
-    worker.finish = [this, state, &noteMutex, &bordersMutex, most = work.most](std::uint32_t s) -> Result<void> {
-      Output& output = state->shop.output;
-      if (auto ok = commit(output, state->at); !ok) return ok;
-      if (m_keepsDiary) {
-        const std::vector<std::byte> note = noteOf(s, output, state->at);
-        std::lock_guard lock(noteMutex);
-        if (auto ok = m_sink.note(note); !ok) return ok;
-      }
-      for (auto& [cell, done] : output.cells) m_done[cell] = std::move(done);
-      {
-        std::lock_guard lock(bordersMutex);
-        releaseBorders(s);
-      }
+  work.start = [&]() -> OrderedWork::Build {
+    return [&, shop = std::make_shared<Workshop>()](std::uint32_t s) -> Result<OrderedWork::Built> {
       // What is kept counts as no other stream's: no thread keeps more than its share.
-      if (costOf(s) > most / static_cast<std::uint64_t>(m_options.threads)) state->shop = {};
-      return {};
+      const bool keeps = costOf(s) <= work.most / static_cast<std::uint64_t>(m_options.threads);
+      auto item = shelf.take();
+      if (auto built = buildStream(s, *shop, item->output); !built) return fail(built.error());
+      m_streams->release(m_usedStreams[s]);
+      if (!keeps) *shop = {};
+      OrderedWork::Built left;
+      left.place = [this, item] { item->at = place(item->output); };
+      left.finish = [&, item, s, keeps]() -> Result<void> {
+        if (auto ok = commit(item->output, item->at); !ok) return ok;
+        if (m_keepsDiary) {
+          const std::vector<std::byte> note = noteOf(s, item->output, item->at);
+          std::lock_guard lock(noteMutex);
+          if (auto ok = m_sink.note(note); !ok) return ok;
+        }
+        for (auto& [cell, done] : item->output.cells) m_done[cell] = std::move(done);
+        {
+          std::lock_guard lock(bordersMutex);
+          releaseBorders(s);
+        }
+        if (keeps) shelf.giveBack(item);
+        return {};
+      };
+      return left;
     };
-    return worker;
   };
   if (auto ok = work.run(progress.part(0.0, 0.95)); !ok) return fail(ok.error());
 
@@ -449,18 +470,19 @@ Result<PartTree> PartStages::run(const Progress& progress) {
     return tops * (2 * m_layout.bytes + 140);
   };
   work.finished = &tileDone;
-  work.start = [&] {
-    auto state = std::make_shared<std::pair<Workshop, Offsets>>();
-    OrderedWork::Worker worker;
-    worker.build = [this, state](std::uint32_t t) { return buildTile(t, state->first); };
-    worker.place = [state, &place](std::uint32_t) { place(state->first.output, state->second); };
-    worker.finish = [this, state](std::uint32_t t) -> Result<void> {
-      if (auto ok = commit(state->first.output, state->second); !ok) return ok;
-      if (m_tiles[t].isCut) m_tiles[t].nodes = std::move(state->first.output.cells[0].second.nodes);
-      state->first = {};
-      return {};
+  work.start = [&]() -> OrderedWork::Build {
+    return [&](std::uint32_t t) -> Result<OrderedWork::Built> {
+      auto item = std::make_shared<Shelf::Item>();
+      if (auto built = buildTile(t, item->output); !built) return fail(built.error());
+      OrderedWork::Built left;
+      left.place = [this, item] { item->at = place(item->output); };
+      left.finish = [this, item, t]() -> Result<void> {
+        if (auto ok = commit(item->output, item->at); !ok) return ok;
+        if (m_tiles[t].isCut) m_tiles[t].nodes = std::move(item->output.cells[0].second.nodes);
+        return {};
+      };
+      return left;
     };
-    return worker;
   };
   if (auto ok = work.run(progress.part(0.95, 1.0)); !ok) return fail(ok.error());
   if (m_next.points != m_pointCount) return fail("The index lost points; this is a fault of the program", {}, "Please report it");

@@ -50,11 +50,12 @@ class PartStages {
     CellPoints points;
     RawVector<std::byte> records;  ///< of a cell, in the source's order
     RawVector<std::uint64_t> packed;
-    Output output;
   };
   struct Offsets {
     std::uint64_t points = 0, tables = 0, tops = 0;
   };
+  /// Outputs on their way to the sink.
+  class Shelf;
   struct Tile {
     glm::ivec3 tile{0};
     std::size_t firstCell = 0, lastCell = 0;  ///< into m_spread.cells
@@ -63,8 +64,10 @@ class PartStages {
     bool isCut = false;
   };
 
-  Result<void> buildStream(std::uint32_t stream, Workshop& shop);
-  Result<void> buildTile(std::uint32_t tile, Workshop& shop);
+  Result<void> buildStream(std::uint32_t stream, Workshop& shop, Output& output);
+  Result<void> buildTile(std::uint32_t tile, Output& output);
+  /// Where an output belongs that follows all placed before.
+  Offsets place(const Output& output);
   std::size_t columnCount() const { return PartSink::kFirstAttribute + m_schema.columns.size(); }
   void emit(Output& output, const SubTree& tree, const std::byte* records, std::size_t stride,
             std::span<const std::uint32_t> rows, CellDone& done);
