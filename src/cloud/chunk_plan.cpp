@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <map>
+#include <utility>
 
 #include "base/widest.h"
 #include "cloud/morton.h"
@@ -60,10 +61,13 @@ bool mortonLess(const PlanCell& a, const PlanCell& b) {
 
 ChunkPlan::ChunkPlan(std::span<const glm::i64vec3> sample, std::uint64_t pointCount, std::uint64_t cellPoints) {
   std::map<std::uint64_t, RawVector<std::uint64_t>> tiles;  // Morton codes inside each, by its own
+  std::array<std::pair<glm::ivec3, RawVector<std::uint64_t>*>, 64> met{};  // a scan's order comes back to its tiles
   for (const glm::i64vec3& unit : sample) {
     const glm::i64vec3 in = unit & std::int64_t{0xffff};
-    tiles[tileCode(glm::ivec3(unit >> std::int64_t{16}))].push_back(mortonOf(
-        static_cast<std::uint64_t>(in.x), static_cast<std::uint64_t>(in.y), static_cast<std::uint64_t>(in.z)));
+    const glm::ivec3 tile(unit >> std::int64_t{16});
+    auto& [its, codes] = met[static_cast<std::size_t>((tile.x & 3) | (tile.y & 3) << 2 | (tile.z & 3) << 4)];
+    if (codes == nullptr || its != tile) its = tile, codes = &tiles[tileCode(tile)];
+    codes->push_back(mortonOf(static_cast<std::uint64_t>(in.x), static_cast<std::uint64_t>(in.y), static_cast<std::uint64_t>(in.z)));
   }
   const double each = sample.empty() ? 1.0 : static_cast<double>(std::max<std::uint64_t>(pointCount, sample.size())) / static_cast<double>(sample.size());
 
