@@ -57,7 +57,7 @@ UnitBox boxOf(const PlanCell& cell) {
 }
 
 /// Before a record of what a cell left to the tree above: its level, where that was drawn.
-constexpr std::size_t kTopHeader = 8;
+constexpr std::size_t kTopHeader = sizeof(std::int64_t);
 
 /// Of a DisplayPoint: what a record begins with.
 constexpr std::size_t kPointBytes = 8;
@@ -315,7 +315,8 @@ Result<void> PartStages::buildStream(std::uint32_t stream, Workshop& shop, Outpu
     tops.resize(done.topsAt + undecided.size() * (kTopHeader + m_layout.bytes));
     std::byte* out = tops.data() + done.topsAt;
     for (const std::uint32_t i : undecided) {
-      std::memcpy(out, &points.level[i], sizeof(std::int16_t));
+      const std::int64_t level = points.level[i];
+      std::memcpy(out, &level, kTopHeader);
       std::memcpy(out + kTopHeader, records.data() + points.row[i] * m_layout.bytes, m_layout.bytes);
       out += kTopHeader + m_layout.bytes;
     }
@@ -342,14 +343,14 @@ Result<void> PartStages::buildTile(std::uint32_t t, Output& output) {
   }
   for (std::size_t at = 0; at < bytes.size(); at += each) {
     const std::uint64_t place = placeOf(bytes.data() + at + kTopHeader);
-    std::int16_t level;
-    std::memcpy(&level, bytes.data() + at, sizeof level);
+    std::int64_t level;
+    std::memcpy(&level, bytes.data() + at, kTopHeader);
     top.points.row.push_back(static_cast<std::uint32_t>(top.points.row.size()));
     top.points.x.push_back(static_cast<std::uint16_t>(place));
     top.points.y.push_back(static_cast<std::uint16_t>(place >> 16));
     top.points.z.push_back(static_cast<std::uint16_t>(place >> 32));
     top.points.code.push_back(mortonOf(place & 0xffff, place >> 16 & 0xffff, place >> 32 & 0xffff));
-    top.points.level.push_back(level);
+    top.points.level.push_back(static_cast<std::int16_t>(level));
   }
   std::vector<Obstacle> obstacles;
   const PlanCell whole{tile.tile, 0, {}};
