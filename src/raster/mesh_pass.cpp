@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "base/parallel.h"
+#include "base/widest.h"
 #include "raster/mesh_kernel.h"
 #include "raster/splat_pass.h"
 
@@ -23,6 +24,7 @@ constexpr int kHalvings = 24;
 /// Neighbours agree within this part of their inverse depth.
 constexpr float kAgree = 0.02f;
 constexpr int kAgreeing = 6;
+constexpr std::size_t kRowsAtATime = 32;
 
 using Quad = std::array<glm::dvec3, 4>;  ///< in the camera's frame
 
@@ -234,14 +236,55 @@ float fromNeighbours(const Image<float>& drawn, int x, int y) {
   return agreeing >= kAgreeing ? sum / static_cast<float>(agreeing) : 0;
 }
 
+ALIDADE_WIDEST void takeNearer(const float* from, std::size_t count, float* to) {
+  for (std::size_t i = 0; i < count; ++i) to[i] = from[i] > to[i] ? from[i] : to[i];
+}
+
+ALIDADE_WIDEST std::size_t countBare(const float* inverse, std::size_t count) {
+  std::uint32_t bare = 0;
+  for (std::size_t i = 0; i < count; ++i) bare += inverse[i] <= 0.0f;
+  return bare;
+}
+
+/// What neighbours tell of bare pixels between them, all from the picture as it was drawn.
+void fillCracks(Image<float>& drawn) {
+  constexpr int kStretch = 64;  // most have no bare pixel, or nothing else
+  struct Filled {
+    std::size_t at;
+    float inverse;
+  };
+  const auto height = static_cast<std::size_t>(drawn.height());
+  std::vector<std::vector<Filled>> bands((height + kRowsAtATime - 1) / kRowsAtATime);
+  parallelFor(height, kRowsAtATime, [&](std::size_t first, std::size_t last, int) {
+    std::vector<Filled>& filled = bands[first / kRowsAtATime];
+    for (auto y = static_cast<int>(first); y < static_cast<int>(last); ++y) {
+      for (int from = 0; from < drawn.width(); from += kStretch) {
+        const int to = std::min(from + kStretch, drawn.width());
+        const auto count = static_cast<std::size_t>(to - from);
+        const std::size_t bare = countBare(drawn.row(y) + from, count);
+        if (bare == 0) continue;
+        const auto isBare = [&](int row) { return row < 0 || row >= drawn.height() || countBare(drawn.row(row) + from, count) == count; };
+        // Then none of them has six neighbours, those at the ends neither.
+        if (bare == count && isBare(y - 1) && isBare(y + 1)) continue;
+        for (int x = from; x < to; ++x) {
+          if (drawn.at(x, y) > 0) continue;
+          if (const float inverse = fromNeighbours(drawn, x, y); inverse > 0)
+            filled.push_back({static_cast<std::size_t>(y) * static_cast<std::size_t>(drawn.width()) + static_cast<std::size_t>(x), inverse});
+        }
+      }
+    }
+  });
+  for (const std::vector<Filled>& band : bands)
+    for (const Filled& pixel : band) drawn.data()[pixel.at] = pixel.inverse;
+}
+
 }  // namespace
 
 Image<float> drawMeshes(const std::vector<std::shared_ptr<const OccluderMesh>>& meshes, const Camera& camera,
                         const RigidTransform& cameraFromWorld) {
   const int width = camera.width(), height = camera.height();
-  Image<float> drawn(width, height, 0.0f);
   const std::vector<BlockTask> tasks = blocksInView(meshes, camera, cameraFromWorld);
-  if (tasks.empty()) return drawn;
+  if (tasks.empty()) return Image<float>(width, height, 0.0f);
   const int stride = (width + kMeshRowSlack + 15) / 16 * 16;
   struct Worker {
     Image<float> pixels;  ///< none until it draws
@@ -254,25 +297,16 @@ Image<float> drawMeshes(const std::vector<std::shared_ptr<const OccluderMesh>>& 
     const MeshTarget target{worker.pixels.data(), stride};
     for (std::size_t i = first; i < last; ++i) drawBlock(tasks[i], camera, target, worker.left);
   });
-  parallelFor(static_cast<std::size_t>(height), 32, [&](std::size_t first, std::size_t last, int) {
-    for (std::size_t y = first; y < last; ++y) {
-      float* row = drawn.row(static_cast<int>(y));
-      for (const Worker& worker : workers) {
-        if (worker.pixels.empty()) continue;
-        const float* other = worker.pixels.row(static_cast<int>(y));
-        for (int x = 0; x < width; ++x) row[x] = std::max(row[x], other[x]);
-      }
-    }
-  });
-  Image<float> filled = drawn;
-  parallelFor(static_cast<std::size_t>(height), 32, [&](std::size_t first, std::size_t last, int) {
+  std::erase_if(workers, [](const Worker& worker) { return worker.pixels.empty(); });
+  Image<float> drawn(width, height, Uncleared{});
+  parallelFor(static_cast<std::size_t>(height), kRowsAtATime, [&](std::size_t first, std::size_t last, int) {
     for (auto y = static_cast<int>(first); y < static_cast<int>(last); ++y) {
-      for (int x = 0; x < width; ++x) {
-        if (drawn.at(x, y) <= 0) filled.at(x, y) = fromNeighbours(drawn, x, y);
-      }
+      std::copy_n(workers[0].pixels.row(y), width, drawn.row(y));
+      for (std::size_t w = 1; w < workers.size(); ++w) takeNearer(workers[w].pixels.row(y), static_cast<std::size_t>(width), drawn.row(y));
     }
   });
-  return filled;
+  fillCracks(drawn);
+  return drawn;
 }
 
 }  // namespace alidade
