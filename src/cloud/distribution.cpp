@@ -209,17 +209,16 @@ class Worker {
     const std::size_t bytes = records.format.bytes;
     m_places.resize(records.count), m_cells.resize(records.count);
     std::array<std::uint16_t, kStretch> intensities;
-    std::array<glm::u16vec3, kStretch> rgb;
     for (std::size_t first = 0; first < records.count; first += kStretch) {
       const std::size_t some = std::min(kStretch, records.count - first);
       const std::byte* from = records.data + first * bytes;
-      const auto take = [&](std::size_t at, auto& column) {
-        for (std::size_t i = 0; i < some; ++i) std::memcpy(&column[i], from + i * bytes + at, sizeof column[i]);
-        return std::span<const typename std::decay_t<decltype(column)>::value_type>(column).first(some);
-      };
       std::uint16_t* colours = m_stretch.colours.data();
-      if (m_rgbAt) displayColours(take(*m_rgbAt, rgb), records.format.rgbWhite, {}, m_brightest, some, colours);
-      else displayColours({}, 0, m_intensityAt ? take(*m_intensityAt, intensities) : std::span<const std::uint16_t>(), m_brightest, some, colours);
+      if (m_rgbAt) {
+        rgb565Of(from + *m_rgbAt, bytes, records.format.rgbWhite, some, colours);
+      } else {
+        for (std::size_t i = 0; m_intensityAt && i < some; ++i) std::memcpy(&intensities[i], from + i * bytes + *m_intensityAt, sizeof intensities[i]);
+        displayColours({}, 0, std::span<const std::uint16_t>(intensities).first(m_intensityAt ? some : 0), m_brightest, some, colours);
+      }
       for (std::size_t i = 0; i < some; ++i) {
         const glm::ivec3 numbers = numbersOf(from + i * bytes);
         m_stretch.x[i] = numbers.x - m_lattice.corner.x, m_stretch.y[i] = numbers.y - m_lattice.corner.y,

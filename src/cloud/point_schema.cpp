@@ -226,11 +226,22 @@ void PointSchema::unpack(std::size_t index, const std::byte* bytes, std::size_t 
   });
 }
 
+void rgb565Of(const std::byte* rgb, std::size_t stride, std::uint16_t rgbWhite, std::size_t count, std::uint16_t* out) {
+  const auto convert = [&](auto shift) {
+    for (std::size_t i = 0; i < count; ++i) {
+      std::array<std::uint16_t, 3> c;
+      std::memcpy(c.data(), rgb + i * stride, sizeof c);
+      out[i] = rgb565(c[0] >> shift & 255, c[1] >> shift & 255, c[2] >> shift & 255);
+    }
+  };
+  if (rgbWhite > 255) convert(std::integral_constant<int, 8>());
+  else convert(std::integral_constant<int, 0>());
+}
+
 void displayColours(std::span<const glm::u16vec3> rgb, std::uint16_t rgbWhite, std::span<const std::uint16_t> intensity,
                     std::uint16_t brightestIntensity, std::size_t count, std::uint16_t* out) {
   if (rgb.size() == count) {
-    const int shift = rgbWhite > 255 ? 8 : 0;
-    for (std::size_t i = 0; i < count; ++i) out[i] = rgb565(rgb[i].r >> shift & 255, rgb[i].g >> shift & 255, rgb[i].b >> shift & 255);
+    rgb565Of(std::as_bytes(rgb).data(), sizeof rgb[0], rgbWhite, count, out);
   } else if (intensity.size() == count && brightestIntensity > 0) {
     // Returns are few and bright at the top of the range: the root keeps the dark majority readable.
     const float white = 1.0f / brightestIntensity;

@@ -80,6 +80,9 @@ class PointSchema::Packing {
 /// 8-bit colours, of 3 numbers each and `stride` bytes apart, where white is 65535: 255 * 257 = 65535, and nothing is lost.
 void widenColours(std::byte* first, std::size_t count, std::size_t stride);
 
+/// RGB565 of colours of three 16-bit numbers each, `stride` bytes apart.
+void rgb565Of(const std::byte* rgb, std::size_t stride, std::uint16_t rgbWhite, std::size_t count, std::uint16_t* rgb565);
+
 /// The colours to draw `count` points with: RGB, else intensity as gray, else a middle gray. Columns that there are not
 /// are empty. `brightestIntensity` is what white stands for.
 void displayColours(std::span<const glm::u16vec3> rgb, std::uint16_t rgbWhite, std::span<const std::uint16_t> intensity,
