@@ -79,7 +79,7 @@ void fillLaw(const Survey& survey, const Lattice& lattice, std::uint64_t points,
 }  // namespace
 
 std::uint64_t cellPointsFor(std::uint64_t pointCount) {
-  return std::clamp<std::uint64_t>(pointCount / 16, 50'000, 250'000);
+  return std::clamp<std::uint64_t>(pointCount / 16, 50'000, 500'000);
 }
 
 Result<PartTree> indexPart(const ScanSource& source, const PartOptions& options, PartSink& sink, const Progress& progress) {

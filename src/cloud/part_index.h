@@ -43,7 +43,7 @@ struct PartOptions {
   int dimensions = 3;                   ///< n of the level law
   int threads = 2;
   std::uint64_t memoryBytes = std::uint64_t{2} << 30;
-  std::uint64_t cellPoints = 250'000;
+  std::uint64_t cellPoints = 500'000;
 };
 
 /// Cells for a scan of this many points: small clouds, too, are worth all cores.
