@@ -188,6 +188,7 @@ double AlignmentScene::spacingM() const {
 ScanView drawScanView(const AlignmentScene& scene, const Camera& camera, const RigidTransform& cameraFromWorld) {
   SelectionOptions wanted;
   wanted.targetSpacingPx = kWantedSpacingPx;
+  wanted.byFacing = false;  // what hides is judged by the gaps between dots
   const std::vector<Selection> chosen = select(scene.scans, camera, cameraFromWorld, wanted);
   std::vector<SplatLayer> layers;
   for (std::size_t i = 0; i < chosen.size(); ++i) layers.push_back({scene.scans[i], chosen[i]});

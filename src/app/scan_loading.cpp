@@ -46,9 +46,13 @@ std::string keptStorePath(const std::string& identity) {
 Result<StoreFolder> keptStore(const ScanSource& source, const Progress& progress) {
   const std::string path = keptStorePath(source.identity);
   if (path.empty()) return fail("There is no folder to keep the scan's index in", {}, "Set ALIDADE_CACHE to a folder");
-  if (isStoreFolder(path))
+  if (isStoreFolder(path)) {
     if (auto kept = openStore(path); kept && !kept->parts.empty() && kept->parts.front().manifest.identity == source.identity)
       return kept;
+    // Finished, but damaged or of another version of the program: it is ours, and made anew. Unfinished work has no manifest and goes on.
+    std::error_code error;
+    std::filesystem::remove(std::filesystem::path(path) / kManifestName, error);
+  }
   if (auto made = indexScans(std::span(&source, 1), path, {}, progress); !made) return fail(made.error());
   return openStore(path);
 }

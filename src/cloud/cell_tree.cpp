@@ -103,8 +103,20 @@ struct Pending {
   std::uint32_t node;
 };
 
-/// More than this tell no more of how flat a node is.
-constexpr std::size_t kPlacesOfSlab = 256;
+/// Places of a settled node that lie evenly over all of it: of its coarsest level steps, as many as hold enough, each in the order of
+/// space, one after every few.
+std::vector<glm::vec3> coarsePlaces(const BuildNode& node, const CellPoints& points, const SubTree& tree) {
+  constexpr std::uint32_t kEnough = 256;  // more tell no more of how flat a node is
+  const std::span<const std::uint32_t> upTo(tree.tables.data() + node.tableOffset, node.bucketCount);
+  const auto last = std::ranges::lower_bound(upTo, std::min(kEnough, node.count));
+  const std::uint32_t among = *last, count = std::min(kEnough, among);
+  std::vector<glm::vec3> places;
+  for (std::uint32_t k = 0; k < count; ++k) {
+    const std::uint32_t i = tree.order[node.first + std::uint64_t{k} * among / count];
+    places.push_back(glm::vec3(points.x[i], points.y[i], points.z[i]));
+  }
+  return places;
+}
 
 /// Appends `kept` to the tree as the node's points, sorted by level step, and its table.
 void settle(BuildNode& node, std::span<const std::uint32_t> kept, const CellPoints& points, SubTree& tree) {
@@ -131,14 +143,7 @@ void settle(BuildNode& node, std::span<const std::uint32_t> kept, const CellPoin
   tree.tables.insert(tree.tables.end(), next.begin() + 1, next.end());
   tree.order.resize(node.first + kept.size());
   for (const std::uint32_t i : kept) tree.order[node.first + next[static_cast<std::size_t>(points.level[i] - low)]++] = i;
-  // The coarsest lie evenly over all of it.
-  std::array<glm::vec3, kPlacesOfSlab> coarsest;
-  const std::size_t count = std::min(coarsest.size(), kept.size());
-  for (std::size_t k = 0; k < count; ++k) {
-    const std::uint32_t i = tree.order[node.first + k];
-    coarsest[k] = glm::vec3(x[i], y[i], z[i]);
-  }
-  node.slab = slabOf({coarsest.data(), count});
+  node.slab = slabOf(coarsePlaces(node, points, tree));
 }
 
 glm::ivec3 cornerOf(std::uint64_t code, int depth) {

@@ -41,8 +41,8 @@ struct SelectionOptions {
   LevelThreshold threshold = LevelThreshold::ByDistance;
   double pointsPerSquareMetre = 150000.0;
   double targetSpacingPx = 1.0;  ///< wanted distance between neighbours on screen at density 1: a point a pixel
-  /// Points per pixel by distance: fewer of them where a surface is seen at an angle, and so as many on screen. A's laws and
-  /// thresholds (Zhang 2020) know the distance alone.
+  /// Points per pixel by distance: fewer of them where a surface is seen at an angle, and so as many on screen. The laws and
+  /// thresholds of Zhang (2020) know the distance alone.
   bool byFacing = true;
   std::uint64_t pointBudget = 0;  ///< over all stores; 0: none
 };

@@ -101,6 +101,7 @@ bool isSoundNode(const CloudNode& node, const PointStoreData::NodePlace& place, 
   if (!isFinite(node.origin) || !std::isfinite(node.step) || !(node.step > 0) || !std::isfinite(node.size) || !std::isfinite(node.spacing) ||
       node.depth > kDeepest || !isSoundSlab(node.slab))
     return false;
+  if (node.count > 0 && !(isFinite(node.bounds.min) && isFinite(node.bounds.max) && !node.bounds.empty())) return false;
   if (!node.bounds.empty() && !(isFinite(node.bounds.min) && isFinite(node.bounds.max))) return false;
   for (int axis = 0; axis < 3; ++axis)
     if (place.corner[axis] > kFarthest || place.corner[axis] < -kFarthest) return false;

@@ -30,7 +30,7 @@ struct LevelSurface {
   int columns = 0;               ///< the pictures are wider: room for what kernels read beyond a row
   Image<float> inverse;          ///< inverse depth, 1/m, which is linear on the screen along a plane; 0 where nothing is
   Image<std::uint32_t> payload;  ///< empty without one
-  std::vector<std::uint8_t> hasCells;  ///< by row, whether there is anything
+  std::vector<std::uint8_t> hasCells;  ///< by row: 0 where there is nothing
 
   LevelSurface(int columns, int rows, bool hasPayload);
   SurfaceRow row(int y) { return {inverse.row(y), payload.empty() ? nullptr : payload.row(y)}; }

@@ -25,8 +25,9 @@ namespace {
 /// so they are wider by this; one pixel as long as that is how far apart they are (closeHoles fills in).
 constexpr double kCover = 1.5;
 constexpr std::uint32_t kPointsPerTask = 16384;
-/// Cells are at least so many times as wide as points are apart. Those of the spacing that the selection wants by default, a pixel,
-/// fall into pixels, though levels are cut in steps.
+/// Cells are at least so many times as wide as points are apart. Those of a surface that faces the eye, which the selection wants a pixel
+/// apart by default, fall into pixels, though levels are cut in steps; seen at an angle, where they are farther apart on the surface, and
+/// unevenly on screen, into cells of two pixels, which have no holes, and into pixels.
 constexpr double kCellCover = 0.98;
 /// What is hidden is looked up when the nearest share of the wide points is drawn, then each time that they are some times as many.
 constexpr std::uint64_t kNearestShare = 8, kMoreBeforeNext = 3, kFewToHide = 300'000;
@@ -56,6 +57,7 @@ std::vector<Task> tasksOf(std::span<const SplatRun> runs, bool onlyChecked) {
 std::pair<int, int> regionOf(const SplatRun& run) {
   constexpr double kRegionPx = 128.0, kFarthest = 4.0, kLeastDepth = 0.1;
   const glm::dvec2 ray = glm::dvec2(run.boxMiddle) / std::max(run.boxMiddle.z, kLeastDepth);
+  if (!std::isfinite(ray.x) || !std::isfinite(ray.y)) return {0, 0};
   const glm::dvec2 place = glm::floor(glm::clamp(ray, -kFarthest, kFarthest) * glm::dvec2(run.view.fx, run.view.fy) / kRegionPx);
   const int row = static_cast<int>(place.y), column = static_cast<int>(place.x);
   return {row, (row & 1) != 0 ? -column : column};
@@ -68,7 +70,8 @@ void shareOut(std::span<const SplatRun> runs, std::span<Task> tasks, std::size_t
   std::uint64_t points = 0, before = 0;
   for (std::size_t i = 0; i < tasks.size(); ++i) {
     const glm::dvec3& middle = runs[tasks[i].run].boxMiddle;
-    fromLeft.push_back({std::atan2(middle.x, middle.z), i});
+    const double angle = std::atan2(middle.x, middle.z);
+    fromLeft.push_back({std::isfinite(angle) ? angle : 0.0, i});
     points += tasks[i].count;
   }
   std::ranges::sort(fromLeft);
@@ -162,8 +165,8 @@ class PlaneDrawer {
 
   const SplatLevels& levels() const { return m_levels; }
 
-  /// For the next frame, on all cores.
-  void clear() {
+  /// Clears the planes for the next frame, on all cores.
+  void release() {
     parallelFor(m_planes.size(), 1, [&](std::size_t first, std::size_t last, int) {
       for (std::size_t i = first; i < last; ++i) m_planes[i].reset();
     });
@@ -264,7 +267,7 @@ void drawPlanes(std::span<SplatRun> runs, int width, int height, const SplatDraw
   parallelFor(static_cast<std::size_t>(height), kRowsPerBand, [&](std::size_t first, std::size_t last, int) {
     merge(planes, drawer.levels(), coarse ? &*coarse : nullptr, static_cast<int>(first), static_cast<int>(last));
   });
-  drawer.clear();
+  drawer.release();
 }
 
 bool inDomain(const void* camera, float x, float y) {

@@ -7,6 +7,7 @@
 #include <cstring>
 #include <deque>
 #include <mutex>
+#include <new>
 #include <utility>
 #include <vector>
 
@@ -40,6 +41,7 @@ class SplatPlanePool {
       const auto fits = [&](const auto& block) { return block->bytes.size() == pixels * bytesPerPixel && block->bytesPerPixel == bytesPerPixel; };
       if (const auto found = std::ranges::find_if(m_free, fits); found != m_free.end()) {
         std::unique_ptr<Block> block = std::move(*found);
+        m_bytes -= block->bytes.size();
         m_free.erase(found);
         return block;
       }
@@ -47,16 +49,25 @@ class SplatPlanePool {
     return std::make_unique<Block>(pixels, bytesPerPixel);
   }
 
-  void giveBack(std::unique_ptr<Block> block) {
+  void giveBack(std::unique_ptr<Block> block) noexcept {
+    const std::size_t bytes = block->bytes.size();
     const std::lock_guard lock(m_mutex);
-    m_free.push_back(std::move(block));
-    if (m_free.size() > kKept) m_free.pop_front();
+    if (bytes > kKeptBytes) return;
+    for (; m_bytes + bytes > kKeptBytes; m_free.pop_front()) m_bytes -= m_free.front()->bytes.size();
+    try {
+      m_free.push_back(std::move(block));
+    } catch (const std::bad_alloc&) {
+      return;
+    }
+    m_bytes += bytes;
   }
 
  private:
-  static constexpr std::size_t kKept = 24;
+  /// Two kinds of picture of 1080p for some twenty threads; those that were returned first go first.
+  static constexpr std::size_t kKeptBytes = std::size_t{1} << 30;
   std::mutex m_mutex;
   std::deque<std::unique_ptr<Block>> m_free;
+  std::size_t m_bytes = 0;
 };
 
 SplatPlane::SplatPlane(std::size_t pixels, std::size_t bytesPerPixel) : m_block(SplatPlanePool::instance().take(pixels, bytesPerPixel)) {}

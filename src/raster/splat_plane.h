@@ -9,8 +9,8 @@
 
 namespace alidade {
 
-/// One thread's pixels, all of all ones at first, and which pieces of them were drawn into. Planes are kept from frame to frame: a
-/// new one costs nothing, and only what was drawn into is cleared again. Not thread-safe.
+/// One thread's pixels, all of all ones at first, and which pieces of them were drawn into. Planes are kept from frame to frame: as
+/// long as sizes stay the same a new one costs nothing, and only what was drawn into is cleared again. Not thread-safe.
 class SplatPlane {
  public:
   /// Pixels of a piece, its first a multiple of it.
@@ -26,10 +26,11 @@ class SplatPlane {
   void* pixels() const;
   /// A byte a piece; who draws into one sets it.
   std::uint8_t* touched() const;
+
+ private:
   /// All ones again where something was drawn.
   void clear();
 
- private:
   struct Block;
   friend class SplatPlanePool;
   std::unique_ptr<Block> m_block;

@@ -8,7 +8,8 @@
 
 namespace alidade {
 
-/// Cells of a surface side by side: inverse depth, 0 where nothing is, and a payload each (see raster/level_surface.h).
+/// Cells of a surface side by side: inverse depth, 0 where nothing is, and a payload each, which means nothing there (see
+/// raster/level_surface.h).
 struct SurfaceCells {
   /// Kernels go some cells at a time: what they read or write has room for so many more.
   static constexpr std::size_t kMore = 40;

@@ -9,6 +9,8 @@
 
 #include <gtest/gtest.h>
 
+#include "cloud/point_store.h"
+
 namespace alidade {
 namespace {
 
@@ -51,6 +53,43 @@ TEST(NodeSlab, WhatIsNotFlatOrNotKnownShowsAll) {
   EXPECT_EQ(facingOf(slabOf({}), {50, 0, 0.5}, 50.0), 1.0);
   const std::vector<glm::vec3> oneAbove(100, glm::vec3(1));
   EXPECT_EQ(facingOf(slabOf(oneAbove), {1, 1, 1}, 0.0), 1.0);
+}
+
+TEST(NodeSlab, OfANodeIsThatOfAllOfIt) {
+  // A floor and a wall that meet: whichever levels and however dense, as if it were of every point.
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> side(0.0, 1.0);
+  int looked = 0;
+  for (const LevelKind levels : {LevelKind::BlueNoise, LevelKind::Random}) {
+    for (const int count : {500, 60'000}) {
+      PointBatch batch;
+      for (int i = 0; i < count; ++i) {
+        const double x = side(random), y = side(random);
+        batch.position.push_back(i % 2 == 0 ? glm::dvec3(x, y, 0) : glm::dvec3(x, 1, y));
+      }
+      PointStoreBuilder::Options options;
+      options.levels = levels;
+      options.leafPoints = 1'000'000;
+      PointStoreBuilder builder(options);
+      builder.add(std::move(batch));
+      const auto store = builder.build(Progress());
+      ASSERT_TRUE(store) << store.error().text();
+      for (const CloudNode& node : (*store)->nodes()) {
+        if (node.count < 200) continue;
+        std::vector<glm::vec3> all;
+        for (std::uint32_t i = 0; i < node.count; ++i) {
+          const DisplayPoint& p = (*store)->points()[node.first + i];
+          all.push_back(glm::vec3(node.step * glm::dvec3(p.x, p.y, p.z)));
+        }
+        const NodeSlab whole = slabOf(all);
+        EXPECT_NEAR(node.slab.roughness, whole.roughness, 0.1) << static_cast<int>(levels) << ' ' << count;
+        for (const glm::dvec3& eye : {glm::dvec3(0.5, -9, 0.1), glm::dvec3(0.5, -9, 9), glm::dvec3(9, 0.5, 0.5)})
+          EXPECT_NEAR(facingOf(node.slab, eye - node.origin, 9.0), facingOf(whole, eye - node.origin, 9.0), 0.1) << static_cast<int>(levels) << ' ' << count;
+        ++looked;
+      }
+    }
+  }
+  EXPECT_GE(looked, 4);
 }
 
 }  // namespace

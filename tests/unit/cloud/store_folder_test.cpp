@@ -403,5 +403,33 @@ TEST(StoreFolder, NodesThatDoNotFitAreRefusedEvenWithTheirChecksum) {
   std::ofstream(nodesPath, std::ios::binary) << good;
 }
 
+/// A folder in one piece, as tests/fuzz/store_fuzz.cpp takes it, laid out again.
+void layOut(const std::string& seed, const std::string& folder) {
+  fs::create_directories(folder + "/part-0001");
+  for (std::size_t at = 0; at + 5 <= seed.size();) {
+    const int file = seed[at];
+    std::uint32_t bytes;
+    std::memcpy(&bytes, seed.data() + at + 1, sizeof bytes);
+    constexpr const char* kFirst[] = {"manifest.json", "part-0001/nodes.bin", "part-0001/tables.bin", "part-0001/points.bin", "part-0001/exact.bin"};
+    const std::string name = file < 5 ? kFirst[file] : fmt::format("part-0001/column-{:03}.bin", file - 4);
+    std::ofstream(folder + "/" + name, std::ios::binary) << seed.substr(at + 5, bytes);
+    at += 5 + bytes;
+  }
+}
+
+TEST(StoreFolder, WhatIsFuzzedBeginsAsStoresThatOpen) {
+  const test::ScratchFolder scratch;
+  int seeds = 0;
+  for (const auto& entry : fs::directory_iterator(ALIDADE_FUZZ_CORPUS_DIR "/store")) {
+    const std::string folder = scratch / entry.path().filename().string();
+    layOut(test::bytesOf(entry.path().string()), folder);
+    const auto store = openStore(folder);
+    ASSERT_TRUE(store) << store.error().text();
+    EXPECT_EQ(store->parts[0].points->batch(0, 1000).size(), store->parts[0].points->pointCount());
+    ++seeds;
+  }
+  EXPECT_GE(seeds, 2);
+}
+
 }  // namespace
 }  // namespace alidade

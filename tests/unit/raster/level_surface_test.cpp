@@ -10,6 +10,7 @@
 
 #include <gtest/gtest.h>
 
+#include "raster/splat_plane.h"
 #include "raster/splatter.h"
 #include "unit/raster/panel.h"
 
@@ -239,6 +240,72 @@ TEST(LevelSurface, IsClosedWhereTheScanIsSparser) {
   for (int y = 120; y < 360; ++y)
     for (int x = 340; x < 500; ++x) bare += std::isinf(images.depth.at(x, y));
   EXPECT_LT(bare, 240 * 160 / 5);  // footprints that face the eye leave three fifths
+}
+
+TEST(LevelSurface, WhatWasNotDrawnIntoIsNotLookedAt) {
+  // Three threads' planes with patches of dots, none of them in some rows, two of them in some places; what is not said to have been drawn
+  // into holds the dots of another frame.
+  const SplatLevels levels(300, 120, 4);
+  std::mt19937 random(8);
+  std::uniform_real_distribution<float> depth(5.0f, 6.0f);
+  constexpr std::uint64_t kBare = ~std::uint64_t{0};
+  std::vector<std::vector<std::uint64_t>> clean(3, std::vector<std::uint64_t>(levels.pixels(), kBare));
+  for (std::size_t k = 0; k < clean.size(); ++k) {
+    for (int patch = 0; patch < 6; ++patch) {
+      const int level = patch % levels.count, columns = levels.columns[level], rows = levels.rows[level];
+      const int left = static_cast<int>(random() % static_cast<unsigned>(columns)), top = static_cast<int>(random() % static_cast<unsigned>(rows));
+      for (int y = top; y < std::min(rows, top + 12); ++y)
+        for (int x = left; x < std::min(columns, left + 40); ++x)
+          if (random() % 3 != 0)
+            clean[k][static_cast<std::size_t>(levels.start[level] + y * columns + x)] =
+                std::uint64_t{std::bit_cast<std::uint32_t>(depth(random))} << 32 | (random() & 0x7fffffff);
+    }
+  }
+  std::vector<std::vector<std::uint64_t>> stale = clean;
+  std::vector<std::vector<std::uint8_t>> touched;
+  SplatPlanes<std::uint64_t> whole, pieces;
+  for (std::size_t k = 0; k < clean.size(); ++k) {
+    std::vector<std::uint8_t>& own = touched.emplace_back((levels.pixels() + SplatPlane::kPiece - 1) / SplatPlane::kPiece, 0);
+    for (std::size_t i = 0; i < clean[k].size(); ++i) own[i / SplatPlane::kPiece] |= clean[k][i] != kBare;
+    for (std::size_t i = 0; i < clean[k].size(); ++i)
+      if (own[i / SplatPlane::kPiece] == 0) stale[k][i] = std::uint64_t{std::bit_cast<std::uint32_t>(1.0f)} << 32;
+  }
+  for (std::size_t k = 0; k < clean.size(); ++k) {
+    whole.planes.push_back({clean[k].data()});
+    pieces.planes.push_back({stale[k].data(), touched[k].data()});
+  }
+  for (const bool closeHoles : {false, true}) {
+    for (const SurfacePayload kind : {SurfacePayload::None, SurfacePayload::Colour, SurfacePayload::Other}) {
+      const auto expected = coarseSurface(whole, levels, closeHoles, 1, kind), found = coarseSurface(pieces, levels, closeHoles, 1, kind);
+      SurfaceRows<std::uint64_t> expectedRows(whole, levels, 0, closeHoles, kind, &*expected), foundRows(pieces, levels, 0, closeHoles, kind, &*found);
+      std::size_t cells = 0;
+      const auto expectSame = [&](const SurfaceCells& a, const SurfaceCells& b, int columns) {
+        for (int x = 0; x < columns; ++x) {
+          ASSERT_EQ(a.inverse[x], b.inverse[x]);
+          if (!(a.inverse[x] > 0)) continue;
+          ++cells;
+          if (kind != SurfacePayload::None) { ASSERT_EQ(a.payload[x], b.payload[x]); }
+        }
+      };
+      for (int y = 0; y < levels.rows[1]; ++y) expectSame(expected->cells(y), found->cells(y), levels.columns[1]);
+      for (int y = 0; y < levels.rows[0]; ++y) expectSame(expectedRows.row(y), foundRows.row(y), levels.columns[0]);
+      EXPECT_GT(cells, 2000u);
+    }
+  }
+}
+
+TEST(LevelSurface, AFrameKeepsNothingOfTheOneBefore) {
+  const test::Panel near{{-2, 4, -1.5}, {4, 0, 0}, {0, 0, 3}};
+  const PointBatch batch = near.points(60'000);
+  const Camera camera = test::pinhole(640, 480, 420);
+  const auto at = RigidTransform::cameraLookingAt({0, 0, 0}, {0, 4, 0}), aside = RigidTransform::cameraLookingAt({0, 0, 0}, {3, 4, 1});
+  const SplatImages first = drawn(batch, camera, at);
+  (void)drawn(batch, camera, aside);
+  const SplatImages again = drawn(batch, camera, at);
+  for (std::size_t i = 0; i < first.depth.size(); ++i) {
+    ASSERT_EQ(first.depth.data()[i], again.depth.data()[i]);
+    ASSERT_EQ(first.colour.data()[i], again.colour.data()[i]);
+  }
 }
 
 TEST(LevelSurface, PointsArePulledUpIntoTheCellsThatTheyLieIn) {
