@@ -26,6 +26,7 @@
 #include "io/calibration_writer.h"
 #include "report/calibration_plots.h"
 #include "report/calibration_report.h"
+#include "ui/figure_spin.h"
 #include "ui/format.h"
 #include "ui/theme.h"
 
@@ -43,7 +44,7 @@ QSpinBox* countBox(int value) {
 }
 
 QDoubleSpinBox* lengthBox(double millimetres) {
-  auto* box = new QDoubleSpinBox;
+  auto* box = new FigureSpin;
   box->setRange(0.1, 10000);
   box->setDecimals(2);
   box->setSuffix(QStringLiteral(" mm"));
@@ -254,7 +255,7 @@ void CalibrationDialog::showOutcome(Result<CalibrationOutcome> result) {
     const CalibrationSummary& s = m_outcome->summary;
     std::string figures = s.report();
     for (const std::string& line : m_outcome->leftOut) figures += "  left out: " + line + "\n";
-    m_figures->setPlainText(text(figures));
+    m_figures->setPlainText(reportText(figures));
     m_state->setText(s.converged ? tr("%1 px rms over %2 pictures, %3 px for pictures left out")
                                        .arg(s.rmsPx, 0, 'f', 3)
                                        .arg(s.pictures.size())

@@ -11,6 +11,7 @@
 #include <QPushButton>
 #include <QSpinBox>
 
+#include "ui/figure_spin.h"
 #include "ui/format.h"
 
 namespace alidade {
@@ -74,7 +75,7 @@ CleaningPanel::CleaningPanel(Session& session, ScanWork& work, QWidget* parent) 
 }
 
 QDoubleSpinBox* CleaningPanel::length(QFormLayout* form, const QString& name, const QString& tip, double value, double low, double high) {
-  auto* spin = new QDoubleSpinBox;
+  auto* spin = new FigureSpin;
   spin->setRange(low, high);
   spin->setDecimals(3);
   spin->setSingleStep(0.01);
@@ -101,7 +102,7 @@ void CleaningPanel::buildSteps() {
   m_outliers = step(form, QStringLiteral("dropOutliers"), tr("Drop outliers"), tr("Points farther from their neighbours than most points are"));
   const StatisticalOutlierOptions outliers;
   m_outlierNeighbours = count(form, tr("Neighbours"), tr("Whose mean distance counts"), outliers.neighbours, 100);
-  m_deviations = new QDoubleSpinBox;
+  m_deviations = new FigureSpin;
   m_deviations->setRange(0.1, 10);
   m_deviations->setSingleStep(0.1);
   m_deviations->setValue(outliers.deviations);

@@ -13,6 +13,7 @@
 
 #include "app/clock_estimation.h"
 #include "app/pose_clock.h"
+#include "ui/figure_spin.h"
 #include "ui/format.h"
 
 namespace alidade {
@@ -49,7 +50,7 @@ ClockPanel::ClockPanel(Session& session, QWidget* parent) : QWidget(parent), m_s
   m_poses = wordsLabel(QStringLiteral("clockPoses"), true);
   m_times = wordsLabel(QStringLiteral("clockTimes"), true);
   m_answer = wordsLabel(QStringLiteral("clockAnswer"), false);
-  m_offset = new QDoubleSpinBox;
+  m_offset = new FigureSpin;
   m_offset->setObjectName(QStringLiteral("clockOffset"));
   m_offset->setDecimals(4);
   m_offset->setRange(-1e10, 1e10);
@@ -57,7 +58,7 @@ ClockPanel::ClockPanel(Session& session, QWidget* parent) : QWidget(parent), m_s
   m_offset->setSuffix(tr(" s"));
   m_offset->setKeyboardTracking(false);
   m_offset->setToolTip(tr("The poses' clock minus the pictures': a frame has the pose of its time plus this"));
-  m_readout = new QDoubleSpinBox;
+  m_readout = new FigureSpin;
   m_readout->setObjectName(QStringLiteral("clockReadout"));
   m_readout->setDecimals(2);
   m_readout->setRange(-200, 200);
@@ -171,7 +172,7 @@ void ClockPanel::estimate() {
           m_answer->clear();
           m_session.messages().error(answer.error());
         } else {
-          m_answer->setText(text(answer->report()));
+          m_answer->setText(reportText(answer->report()));
           if (answer->found && m_session.project()->findTrajectory(id))
             m_session.change(tr("Estimate clock offset"), [&](Project& changed) {
               setClockOffset(changed, id, answer->offsetSecs, answer->stdSecs);

@@ -5,18 +5,29 @@
 
 #include <cmath>
 
+#include <QRegularExpression>
+
 namespace alidade {
 
 namespace {
 
 constexpr QChar kNarrowSpace(0x202F);
-constexpr QChar kMinus(0x2212);
+}  // namespace
 
 QString withMinus(QString number) {
   return number.replace('-', kMinus);
 }
 
-}  // namespace
+QString reportText(const std::string& utf8) {
+  static const QRegularExpression hyphen(QStringLiteral("(?<![\\w-])-(?=\\d)"));
+  return text(utf8).replace(hyphen, QString(kMinus));
+}
+
+QString formatNumber(double value, int decimals) {
+  if (!std::isfinite(value)) return QStringLiteral("–");
+  const QString figure = QString::number(std::abs(value), 'f', decimals);
+  return std::signbit(value) && figure.toDouble() != 0 ? kMinus + figure : figure;
+}
 
 QString formatCoordinate(double metres) {
   if (!std::isfinite(metres)) return QStringLiteral("–");

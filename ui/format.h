@@ -18,6 +18,11 @@ namespace alidade {
 // How figures are written on screen: the unit beside every number, thousands parted by a narrow
 // space, a true minus sign.
 
+constexpr QChar kMinus(0x2212);
+QString withMinus(QString number);  ///< each hyphen a minus
+/// A report of a job: the hyphens before its figures as minus signs, those within names and words as they are.
+QString reportText(const std::string& utf8);
+QString formatNumber(double value, int decimals);  ///< "−0.25", never "-0.00"; "–" where not finite
 QString formatCoordinate(double metres);       ///< "100 612.314"
 QString formatWorld(const glm::dvec3& world);  ///< "E 100 612.314  N 196 261.882  H 6.913 m"
 QString formatPixel(const glm::dvec2& pixel);  ///< "812.4, 377.0 px"

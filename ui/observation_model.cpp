@@ -11,6 +11,8 @@ namespace alidade {
 
 namespace {
 
+constexpr QChar kFigureSpace(0x2007);
+
 QString kindName(ObservedKind kind) {
   switch (kind) {
     case ObservedKind::Control:
@@ -74,19 +76,20 @@ QString ObservationModel::words(const Row& row, int column) const {
     case Name:
       return (row.outlier ? QStringLiteral("▲ ") : QString()) + text(seen.name);
     case Residual:
-      if (row.residualM) return formatMillimetres(std::abs(*row.residualM));
+      if (row.residualM) return tr("%1 mm").arg(formatNumber(1000 * std::abs(*row.residualM), 2));
       if (!seen.hasPixel()) return {};
-      return row.residual ? QString::number(glm::length(*row.residual), 'f', 2) : tr("not seen");
+      return row.residual ? tr("%1 px").arg(formatNumber(glm::length(*row.residual), 2)) : tr("not seen");
     case Across:
-      return row.residual ? QString::number(row.residual->x, 'f', 2) : QString();
+      return row.residual ? formatNumber(row.residual->x, 2) : QString();
     case Down:
-      return row.residual ? QString::number(row.residual->y, 'f', 2) : QString();
+      return row.residual ? formatNumber(row.residual->y, 2) : QString();
     case Kind:
       return kindName(seen.kind);
     case Place:
       if (seen.kind == ObservedKind::Depth) return formatDistance(seen.depthM);
       if (!seen.hasPixel()) return {};
-      return QStringLiteral("%1, %2").arg(seen.pixel.x, 0, 'f', 2).arg(seen.pixel.y, 0, 'f', 2);
+      // The second figure as wide in every row, so that the decimals of both stand in line.
+      return QStringLiteral("%1, %2").arg(formatNumber(seen.pixel.x, 2), formatNumber(seen.pixel.y, 2).rightJustified(7, kFigureSpace));
     case FrameName:
       return row.frame;
     default:
@@ -124,7 +127,7 @@ QVariant ObservationModel::data(const QModelIndex& index, int role) const {
   if (role == Qt::TextAlignmentRole && (column == Residual || column == Across || column == Down || column == Place))
     return QVariant(Qt::AlignRight | Qt::AlignVCenter);
   if (role == Qt::ToolTipRole)
-    return (row.seen.hasPixel() ? tr("%1 in %2: %3 px, %4").arg(text(row.seen.name), row.frame, words(row, Residual), formatWorld(row.seen.world))
+    return (row.seen.hasPixel() ? tr("%1 in %2: %3, %4").arg(text(row.seen.name), row.frame, words(row, Residual), formatWorld(row.seen.world))
                                 : tr("%1, %2 ± %3").arg(text(row.seen.name), kindName(row.seen.kind), formatMillimetres(row.seen.sigmaM))) +
            (row.outlier ? tr("\nAn outlier: it took no part. Leave it out or pick it again") : QString());
   return {};
@@ -148,10 +151,10 @@ Qt::ItemFlags ObservationModel::flags(const QModelIndex& index) const {
 
 QVariant ObservationModel::headerData(int section, Qt::Orientation orientation, int role) const {
   if (orientation != Qt::Horizontal || section < 0 || section >= ColumnCount) return {};
-  static const char* const names[] = {QT_TR_NOOP("Point"), QT_TR_NOOP("px"),   QT_TR_NOOP("Δu"),   QT_TR_NOOP("Δv"),
+  static const char* const names[] = {QT_TR_NOOP("Point"), QT_TR_NOOP("|Δ|"), QT_TR_NOOP("Δu"),   QT_TR_NOOP("Δv"),
                                       QT_TR_NOOP("Check"), QT_TR_NOOP("Kind"), QT_TR_NOOP("u, v"), QT_TR_NOOP("Frame")};
   static const char* const tips[] = {QT_TR_NOOP("Ticked: takes part"),
-                                     QT_TR_NOOP("Residual: fitted - observed, pixels; of a depth millimetres"),
+                                     QT_TR_NOOP("Residual: fitted − observed, pixels; of a depth millimetres"),
                                      QT_TR_NOOP("Residual to the right, pixels"),
                                      QT_TR_NOOP("Residual downwards, pixels"),
                                      QT_TR_NOOP("Ticked: takes no part, only its residual is shown"),

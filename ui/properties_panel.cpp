@@ -182,10 +182,7 @@ void PropertiesPanel::showFrame() {
     if (camera->mount && camera->mount->body != camera->name) {
       const glm::dvec3 at = camera->mount->cameraFromBody.centre();
       row(tr("Mounted"), tr("%1, %2, %3 m on %4")
-                             .arg(at.x, 0, 'f', 4)
-                             .arg(at.y, 0, 'f', 4)
-                             .arg(at.z, 0, 'f', 4)
-                             .arg(text(camera->mount->body)));
+                             .arg(formatNumber(at.x, 4), formatNumber(at.y, 4), formatNumber(at.z, 4), text(camera->mount->body)));
       if (const glm::dvec3 std = camera->mount->offsetStdM; std != glm::dvec3(0))
         row(tr("σ mounting"), QStringLiteral("%1, %2, %3").arg(formatMillimetres(std.x), formatMillimetres(std.y), formatMillimetres(std.z)));
     }

@@ -291,7 +291,7 @@ void ResectionPanel::refreshSummary() {
   if (m_refinement.sequence()) lines = sequenceWords();
   const bool converged = m_refinement.sequence() ? m_refinement.sequence()->converged : summary->converged;
   if (!converged) {
-    lines << tr("✕ Not refined: %1").arg(text(m_refinement.sequence() ? m_refinement.sequence()->reason : summary->reason));
+    lines << tr("✕ Not refined: %1").arg(reportText(m_refinement.sequence() ? m_refinement.sequence()->reason : summary->reason));
     m_form->summary->setText(lines.join('\n'));
     return;
   }
@@ -331,8 +331,8 @@ void ResectionPanel::refreshSummary() {
   for (std::size_t i = 0; i < summary->cameraAccuracy.size(); ++i)
     if (const CameraAccuracy& known = summary->cameraAccuracy[i]; !known.covariance.empty() && known.std(0) > 0)
       lines << tr("Focal length %1 ± %2 px").arg(summary->cameras[i].fx, 0, 'f', 2).arg(known.std(0), 0, 'f', 2);
-  for (const std::string& pair : summary->correlations) lines << tr("▲ %1").arg(text(pair));
-  for (const std::string& warning : summary->warnings) lines << tr("▲ %1").arg(text(warning));
+  for (const std::string& pair : summary->correlations) lines << tr("▲ %1").arg(reportText(pair));
+  for (const std::string& warning : summary->warnings) lines << tr("▲ %1").arg(reportText(warning));
   if (const int outliers = summary->outlierCount(); outliers > 0)
     lines << tr("▲ %1 outliers took no part: leave them out or pick them again").arg(outliers);
   if (m_refinement.hasCandidate()) lines << tr("Hold B to see the pose before.");

@@ -51,7 +51,7 @@ void ScanWork::run(const QString& title, const QString& change, ScanId scan, Wor
           m_report = text(derived.error().what);
           m_session.messages().error(derived.error(), change);
         } else if (m_session.project()->path == path && findScan(*m_session.project(), scan)) {
-          m_report = text(derived->report);
+          m_report = reportText(derived->report);
           take(change, scan, std::move(*derived));
         }
         emit changed();

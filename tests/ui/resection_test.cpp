@@ -252,9 +252,9 @@ TEST_F(ResectionWindow, DepthsAndSurfacesStandAmongTheObservations) {
   ASSERT_EQ(table->model()->rowCount(), static_cast<int>(before) + 3);
   table->sortByColumn(ObservationModel::Residual, Qt::DescendingOrder);
   EXPECT_EQ(text(0, ObservationModel::Kind), "known");
-  EXPECT_NEAR(text(0, ObservationModel::Residual).toDouble(), 3, 0.1);
+  EXPECT_NEAR(text(0, ObservationModel::Residual).section(' ', 0, 0).toDouble(), 3, 0.1);
   EXPECT_EQ(text(1, ObservationModel::Kind), "depth");
-  EXPECT_EQ(text(1, ObservationModel::Residual), "12 mm");
+  EXPECT_EQ(text(1, ObservationModel::Residual), "12.00 mm");
   EXPECT_TRUE(text(1, ObservationModel::Place).endsWith(" m"));
   EXPECT_EQ(text(2, ObservationModel::Kind), "surface");
   const auto flags = [&](int row) { return table->model()->flags(table->model()->index(row, ObservationModel::Check)); };
