@@ -25,6 +25,7 @@ namespace alidade {
 /// What to make a project of; every list may be empty.
 struct NewProjectInputs {
   std::vector<std::string> scans;
+  bool scansAlone = false;           ///< without the pictures and cameras that files of scans hold, too (E57)
   std::vector<std::string> designs;
   std::vector<std::string> images;   ///< folders or files
   std::vector<std::string> videos;

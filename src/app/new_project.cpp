@@ -106,6 +106,22 @@ class Assembler {
     return {};
   }
 
+  /// A file of scans may hold pictures and their cameras as well (E57). One of pictures alone is no scan that failed, unless
+  /// a scan was asked for.
+  Result<void> addScanWithPictures(const std::string& path, bool scanWanted) {
+    if (isStoreFolder(path)) return addStore(path);
+    const auto pictures = ReaderRegistry::instance().findAs<PictureReader>(path);
+    const auto& videos = project().videos;
+    const std::string full = absolute(path);
+    const bool there = std::any_of(videos.begin(), videos.end(), [&](const Video& video) { return video.source.path == full; });
+    if (there || !pictures || !(*pictures)->inspect(path)) return addScan(path);
+    if (const auto scan = addScan(path); !scan) {
+      if (scanWanted) return scan;
+      m_outcome.notes.push_back("No scan was taken from " + path + ": " + scan.error().what);
+    }
+    return addPicturesIn(path);
+  }
+
   Result<void> addDesign(const std::string& path) {
     const auto reader = ReaderRegistry::instance().findAs<DesignReader>(path);
     if (!reader) return fail(reader.error());
@@ -197,7 +213,7 @@ class Assembler {
     const auto reader = ReaderRegistry::instance().find(path);
     if (!reader) return fail(reader.error());
     switch ((*reader)->kind()) {
-      case ReaderKind::Scan: return addScanWithPictures(path);
+      case ReaderKind::Scan: return addScanWithPictures(path, false);
       case ReaderKind::Design: return addDesign(path);
       case ReaderKind::Pictures: return addPicturesWithSidecars(path);
       case ReaderKind::Cameras: return addCameras(path);
@@ -231,19 +247,17 @@ class Assembler {
     return addCameras(path);
   }
 
-  /// A file of scans may hold pictures and their cameras as well (E57).
-  Result<void> addScanWithPictures(const std::string& path) {
-    const auto pictures = ReaderRegistry::instance().findAs<PictureReader>(path);
-    if (!pictures || !(*pictures)->inspect(path)) return addScan(path);
-    const auto& videos = project().videos;
-    const std::string full = absolute(path);
-    if (std::any_of(videos.begin(), videos.end(), [&](const Video& video) { return video.source.path == full; })) return addScan(path);
-    // One of pictures alone is no scan that failed.
-    const auto scan = addScan(path);
-    if (!scan) m_outcome.notes.push_back("No scan was taken from " + path + ": " + scan.error().what);
+  /// Pictures in a file of scans, with their cameras.
+  Result<void> addPicturesIn(const std::string& path) {
+    const std::size_t before = project().frames.size();
     if (auto added = addPictures(path); !added) return added;
-    if (!ReaderRegistry::instance().findAs<CameraReader>(path)) return {};
-    return addCameras(path);
+    if (project().frames.size() == before || !ReaderRegistry::instance().findAs<CameraReader>(path)) return {};
+    auto set = inspectCameras(path);
+    if (!set) return fail(set.error());
+    CameraSource source{path, std::move(*set), {}};
+    for (std::size_t i = before; i < project().frames.size(); ++i) source.only.push_back(project().frames[i].id);
+    m_cameras.push_back(std::move(source));
+    return {};
   }
 
   static Result<CameraSet> inspectCameras(const std::string& path) {
@@ -385,7 +399,9 @@ Result<NewProjectOutcome> newProject(const NewProjectInputs& inputs, const Progr
     return {};
   };
   using Path = const std::string&;
-  if (auto r = each(inputs.scans, [&](Path p) { return assembler.addScan(p); }); !r) return fail(r.error());
+  if (auto r = each(inputs.scans, [&](Path p) {
+        return inputs.scansAlone ? assembler.addScan(p) : assembler.addScanWithPictures(p, true);
+      }); !r) return fail(r.error());
   if (auto r = each(inputs.designs, [&](Path p) { return assembler.addDesign(p); }); !r) return fail(r.error());
   if (auto r = each(inputs.images, [&](Path p) { return assembler.addPictures(p); }); !r) return fail(r.error());
   if (auto r = each(inputs.videos, [&](Path p) { return assembler.addPictures(p); }); !r) return fail(r.error());

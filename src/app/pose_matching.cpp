@@ -250,10 +250,13 @@ void dropUnusedCameras(Project& project) {
     std::erase_if(project.cameras, [&](const CameraRecord& record) { return !used(record); });
 }
 
-std::vector<Frame*> framesOf(Project& project, const CameraSource& source) {
+/// A pose without a name goes to no frame that another source brought along.
+std::vector<Frame*> framesOf(Project& project, const CameraSource& source, const std::vector<CameraSource>& all) {
   std::vector<Frame*> frames;
+  const auto names = [](const CameraSource& of, const Frame& frame) { return std::find(of.only.begin(), of.only.end(), frame.id) != of.only.end(); };
   const auto serves = [&](const Frame& frame) {
-    return source.only.empty() || std::find(source.only.begin(), source.only.end(), frame.id) != source.only.end();
+    if (!source.only.empty()) return names(source, frame);
+    return hasNames(source.set) || std::none_of(all.begin(), all.end(), [&](const CameraSource& other) { return names(other, frame); });
   };
   for (Frame& frame : project.frames)
     if (serves(frame)) frames.push_back(&frame);
@@ -301,7 +304,7 @@ std::vector<std::string> matchPoses(Project& project, const std::vector<CameraSo
     const CameraSet& set = source.set;
     if (set.pictures.empty() && !calibration) calibration = cameras.theOnlyOne();
     for (const auto& warning : set.warnings) notes.push_back(warning.what + " (" + warning.where + ")");
-    const std::vector<Frame*> frames = framesOf(project, source);
+    const std::vector<Frame*> frames = framesOf(project, source, sources);
     if (set.pictures.empty() || frames.empty()) continue;
     if (hasNames(set)) {
       const auto [left, ambiguous] = matchByName(frames, set, cameras);

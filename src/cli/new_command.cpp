@@ -76,7 +76,8 @@ void addNew(Verbs& verbs) {
         return answer;
       });
   command->add_option("project", arguments->project, "Project file to write, *.alidade")->required();
-  command->add_option("--scan", arguments->inputs.scans, "Point clouds");
+  command->add_option("--scan", arguments->inputs.scans, "Point clouds; an E57 file's pictures and cameras come along");
+  command->add_flag("--scan-alone", arguments->inputs.scansAlone, "Of --scan take the points, not the pictures and cameras");
   command->add_option("--design", arguments->inputs.designs, "IFC, OBJ, glTF, STL");
   command->add_option("--images", arguments->inputs.images, "Folders of pictures, or pictures");
   command->add_option("--video", arguments->inputs.videos, "Video files");

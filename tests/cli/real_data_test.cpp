@@ -161,6 +161,22 @@ TEST(E57, ItsPicturesAndTheirCamerasComeWithTheFile) {
   EXPECT_EQ(made.json()["cameras"], 1);
 }
 
+TEST(E57, AScanBringsItsPicturesUnlessItIsWantedAlone) {
+  const auto e57 = sharedData("e57");
+  if (e57.empty()) GTEST_SKIP() << "the E57 files are not here";
+  const std::string scan = " --scan " + quoted(e57 / "self" / "PinholeImageWithDistortionParameters.e57");
+  const std::string base = "new --json --overwrite " + quoted(scratch() / "e57_scan.alidade") + scan;
+  const auto whole = alidadeCli(base);
+  ASSERT_EQ(whole.exitCode, 0) << whole.errors << whole.output;
+  EXPECT_EQ(whole.json()["scans"], 1);
+  EXPECT_EQ(whole.json()["frames"], 3);
+  EXPECT_EQ(whole.json()["cameras"], 1);
+  const auto alone = alidadeCli(base + " --scan-alone");
+  ASSERT_EQ(alone.exitCode, 0) << alone.errors << alone.output;
+  EXPECT_EQ(alone.json()["scans"], 1);
+  EXPECT_EQ(alone.json()["frames"], 0);
+}
+
 // Metashape's own export in place of the COLMAP model: the same pose, the same lens, so the same pixels.
 TEST(Road, MetashapesXmlAndItsColmapModelSeeTheSamePixels) {
   const auto road = sharedData("road");

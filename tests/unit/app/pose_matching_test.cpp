@@ -225,4 +225,18 @@ TEST(PoseMatching, ARigsTrajectoryServesEachCameraFromItsOwnPlace) {
   }
 }
 
+TEST(PoseMatching, PosesWithoutNamesLeaveOutTheFramesThatAnotherSourceBrought) {
+  Project project = projectWithFrames({"Image 1", "a.jpg", "b.jpg"});
+  CameraSource scan{"scan.e57", {}, {FrameId{1}}};
+  scan.set.cameras = {pinhole(100, 80)};
+  scan.set.pictures = {posed("Image 1", 500)};
+  CameraSource way{"way.txt", {}, {}};
+  way.set.pictures = {posed("", 1, -1), posed("", 2, -1)};
+  matchPoses(project, {scan, way});
+  ASSERT_TRUE(project.frames[0].cameraFromWorld && project.frames[1].cameraFromWorld && project.frames[2].cameraFromWorld);
+  EXPECT_NEAR(project.frames[0].cameraFromWorld->centre().x, 500, 1e-9);
+  EXPECT_NEAR(project.frames[1].cameraFromWorld->centre().x, 1, 1e-9);
+  EXPECT_NEAR(project.frames[2].cameraFromWorld->centre().x, 2, 1e-9);
+}
+
 }  // namespace alidade
