@@ -72,6 +72,8 @@ const std::vector<ActionSpec>& actionTable() {
       {C::RegisterScan, "registerScan", "Register the scan", "", "", "Fits the scan that the panel names to the one that stays"},
       {C::ShowClock, "showClock", "Clock", "", "",
        "Shows how pictures and poses agree in time: clock offset, row read-out"},
+      {C::ShowMount, "showMount", "Camera mount", "camera", "",
+       "Shows where the camera sits on the body that carries it, and sets it"},
       {C::ThemeDark, "themeDark", "Dark", "", "", "Neutral dark grey, so that the picture is judged fairly",
        true},
       {C::ThemeLight, "themeLight", "Light", "", "", "Light surroundings", true},

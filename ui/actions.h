@@ -54,6 +54,7 @@ enum class Command {
   CleanScan,
   RegisterScan,
   ShowClock,
+  ShowMount,
   ThemeDark,
   ThemeLight,
   ThemeContrast,

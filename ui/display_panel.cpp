@@ -3,26 +3,10 @@
 
 #include "ui/display_panel.h"
 
-#include <algorithm>
-#include <cmath>
-
 #include "geometry/angle.h"
+#include "geometry/bearing.h"
 
 namespace alidade {
-
-LightAngles lightAngles(const glm::dvec3& travel) {
-  const double length = glm::length(travel);
-  if (!(length > 0)) return {0, 90};
-  const glm::dvec3 from = -travel / length;
-  double azimuth = degreesFromRadians(std::atan2(from.x, from.y));
-  if (azimuth < 0) azimuth += 360;
-  return {azimuth, degreesFromRadians(std::asin(std::clamp(from.z, -1.0, 1.0)))};
-}
-
-glm::dvec3 lightTravel(const LightAngles& angles) {
-  const double a = radiansFromDegrees(angles.azimuth), e = radiansFromDegrees(angles.elevation);
-  return -glm::dvec3(std::sin(a) * std::cos(e), std::cos(a) * std::cos(e), std::sin(e));
-}
 
 DisplayPanel::DisplayPanel(Session& session, QWidget* parent) : SettingsForm(session, parent) {
   setObjectName(QStringLiteral("displayPanel"));
@@ -55,18 +39,18 @@ DisplayPanel::DisplayPanel(Session& session, QWidget* parent) : SettingsForm(ses
       [](auto& d, double v) { d.depthToleranceM = v / 1000; });
 
   QFormLayout* light = section(tr("Light"));
-  number(
-      light, tr("Azimuth"), tr("Where the light comes from, clockwise from north"), tr("°"), 0, 360, 1, 0,
-      [](const auto& d) { return lightAngles(d.lightDirection).azimuth; },
-      [](auto& d, double v) {
-        d.lightDirection = lightTravel({v, lightAngles(d.lightDirection).elevation});
-      });
-  number(
-      light, tr("Elevation"), tr("How high the light stands above the horizon"), tr("°"), -89, 89, 1, 0,
-      [](const auto& d) { return lightAngles(d.lightDirection).elevation; },
-      [](auto& d, double v) {
-        d.lightDirection = lightTravel({lightAngles(d.lightDirection).azimuth, v});
-      });
+  const auto turn = [&](const QString& name, const QString& tip, double low, double high, double Bearing::*member) {
+    number(
+        light, name, tip, tr("°"), low, high, 1, 0,
+        [member](const auto& d) { return degreesFromRadians(bearingOf(-d.lightDirection).*member); },
+        [member](auto& d, double v) {
+          Bearing from = bearingOf(-d.lightDirection);
+          from.*member = radiansFromDegrees(v);
+          d.lightDirection = -directionOf(from);
+        });
+  };
+  turn(tr("Azimuth"), tr("Where the light comes from, clockwise from north"), 0, 360, &Bearing::azimuthRad);
+  turn(tr("Elevation"), tr("How high the light stands above the horizon"), -89, 89, &Bearing::elevationRad);
 
   QFormLayout* grey = section(tr("Colour"));
   check(grey, tr("Picture in grey (G)"), tr("So that the design stands out"),

@@ -15,11 +15,4 @@ class DisplayPanel : public SettingsForm {
   explicit DisplayPanel(Session& session, QWidget* parent = nullptr);
 };
 
-/// Direction the light comes from, degrees: azimuth clockwise from north, elevation above the horizon.
-struct LightAngles {
-  double azimuth = 0, elevation = 0;
-};
-LightAngles lightAngles(const glm::dvec3& travel);
-glm::dvec3 lightTravel(const LightAngles& angles);
-
 }  // namespace alidade

@@ -89,7 +89,7 @@ void ExportDialog::requestPreview() {
   const QPointer<ExportDialog> self(this);
   Session* const session = &m_session;
   m_session.renderLoop().runOnThread([=](OverlayRenderer& renderer, PictureCache& pictures) {
-    auto rendered = renderFrame(*project, *data, frame, size.width(), size.height(), renderer, pictures);
+    auto rendered = renderFrame(*project, *data, frame, {size.width(), size.height()}, renderer, pictures);
     std::shared_ptr<const RenderedFrame> shared;
     QImage preview;
     if (rendered) {

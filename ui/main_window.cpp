@@ -58,7 +58,7 @@ QWidget* scrolling(QWidget* content) {
   return area;
 }
 
-constexpr int kLayoutVersion = 3;
+constexpr int kLayoutVersion = 4;
 
 }  // namespace
 

@@ -132,7 +132,7 @@ class MainWindow : public QMainWindow {
   QToolBar* m_toolBar;
   QWidget* m_timeline;
   QList<QDockWidget*> m_docks;
-  QDockWidget *m_projectDock, *m_propertiesDock, *m_displayDock, *m_pointsDock, *m_clockDock, *m_resectionDock, *m_cleaningDock,
+  QDockWidget *m_projectDock, *m_propertiesDock, *m_displayDock, *m_pointsDock, *m_clockDock, *m_mountDock, *m_resectionDock, *m_cleaningDock,
       *m_messageDock;
   QMenu* m_recentMenu;
   std::shared_ptr<MeasuredDistances> m_measurements;

@@ -17,6 +17,7 @@
 #include <QSplitter>
 #include <QToolBar>
 
+#include "app/shown_elements.h"
 #include "app/version.h"
 #include "ui/calibration_dialog.h"
 #include "ui/cleaning_panel.h"
@@ -252,12 +253,8 @@ void MainWindow::isolateStorey() {
   if (!model || selection.element < 0) return;
   const std::string storey = model->elements[static_cast<std::size_t>(selection.element)].storey;
   m_session->change(tr("Show only %1").arg(text(storey)), [&](Project& project) {
-    for (Design& design : project.designs) {
-      if (design.id != selection.design) continue;
-      design.hiddenElements.clear();
-      for (const DesignElement& element : model->elements)
-        if (element.storey != storey) design.hiddenElements.push_back(element.globalId);
-    }
+    for (Design& design : project.designs)
+      if (design.id == selection.design) showOnlyStorey(design, *model, storey);
   });
 }
 

@@ -4,6 +4,7 @@
 #include "ui/points_panel.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include <QDoubleSpinBox>
 #include <QFormLayout>
@@ -15,6 +16,7 @@
 
 #include "geometry/angle.h"
 #include "survey/classification.h"
+#include "ui/figure_spin.h"
 #include "ui/format.h"
 #include "ui/histogram_view.h"
 
@@ -31,7 +33,7 @@ QIcon swatch(const glm::u8vec3& colour) {
 }
 
 QDoubleSpinBox* rangeEnd(const QString& name) {
-  auto* spin = new QDoubleSpinBox;
+  auto* spin = new FigureSpin;
   spin->setRange(-1e15, 1e15);
   spin->setDecimals(3);
   spin->setButtonSymbols(QAbstractSpinBox::NoButtons);
@@ -70,6 +72,7 @@ PointsPanel::PointsPanel(Session& session, QWidget* parent) : SettingsForm(sessi
   buildClasses();
   buildBox();
   buildSection();
+  buildCuts();
   buildLook();
   buildPace();
   finish();
@@ -259,7 +262,7 @@ void PointsPanel::buildLook() {
 void PointsPanel::buildPace() {
   QFormLayout* form = section(tr("While the view moves"));
   const auto row = [&](const QString& objectName, const QString& name, const QString& tip, double high, double FramePace::*member) {
-    auto* spin = new QDoubleSpinBox;
+    auto* spin = new FigureSpin;
     spin->setObjectName(objectName);
     spin->setRange(0, high);
     spin->setDecimals(0);
@@ -278,6 +281,22 @@ void PointsPanel::buildPace() {
   };
   row(QStringLiteral("frameTime"), tr("Time of a frame"), tr("Fewer points are used to keep it; the still picture has all. 0 always uses all"), 500,
       &FramePace::frameTimeMs);
+  auto* most = new FigureSpin;
+  most->setObjectName(QStringLiteral("mostPoints"));
+  most->setRange(0, 10'000);
+  most->setDecimals(2);
+  most->setSuffix(tr(" M"));
+  most->setSpecialValueText(tr("no limit"));
+  most->setAccessibleName(tr("Points at most"));
+  most->setToolTip(tr("No more points than these are used while the view moves, however quick it is; the still picture has all"));
+  most->setKeyboardTracking(false);
+  most->setValue(static_cast<double>(m_session.pace().mostPoints) / 1e6);
+  form->addRow(tr("Points at most"), most);
+  connect(most, &QDoubleSpinBox::valueChanged, this, [this](double millions) {
+    FramePace pace = m_session.pace();
+    pace.mostPoints = static_cast<std::uint64_t>(std::llround(millions * 1e6));
+    m_session.setPace(pace);
+  });
   row(QStringLiteral("selectionAge"), tr("Points serve for"), tr("The points chosen for one frame serve the next ones for so long. 0 chooses for each"),
       1000, &FramePace::selectionAgeMs);
 }

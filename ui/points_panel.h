@@ -17,7 +17,7 @@ namespace alidade {
 class HistogramView;
 
 /// How the scan's points look and which are used: colour by attribute with its range, classes, clip
-/// box, section, density and size.
+/// box, section, clip planes, density and size.
 class PointsPanel : public SettingsForm {
   Q_OBJECT
 
@@ -29,6 +29,7 @@ class PointsPanel : public SettingsForm {
   void buildClasses();
   void buildBox();
   void buildSection();
+  void buildCuts();
   void buildLook();
   void buildPace();
 
@@ -40,6 +41,12 @@ class PointsPanel : public SettingsForm {
   Bounds boundsOfInterest() const;
   void boxAroundInterest();
   void sectionThroughInterest();
+  CutPlane cutOf(const DisplaySettings& display) const;  ///< that the list stands on
+  void editCut(DisplaySettings& display, const std::function<void(CutPlane&)>& edit) const;
+  void refreshCuts(const DisplaySettings& display);
+  void addCut();
+  void turnCut();
+  void removeCut();
 
   std::optional<PointSummary> m_summary;  ///< of all scans together
   HistogramView* m_histogram = nullptr;
@@ -48,6 +55,7 @@ class PointsPanel : public SettingsForm {
   QLabel* m_rangeNote = nullptr;
   QListWidget* m_classes = nullptr;
   QLabel* m_noClasses = nullptr;
+  QListWidget* m_cuts = nullptr;
   bool m_filling = false;
 };
 

@@ -131,7 +131,7 @@ void RenderLoop::render(OverlayRenderer& renderer, const RenderRequest& request)
     description->residuals.clear();
   }
   const auto drawing = Clock::now();
-  description->pointBudget = m_pacer.begin(request.pace ? request.pace->frameTimeMs : 0);
+  description->pointBudget = m_pacer.begin(request.pace);
   description->selectionAgeMs = request.pace ? request.pace->selectionAgeMs : 0;
   auto rendered = renderer.render(*description);
   result->renderMs = millisecondsSince(drawing);

@@ -23,6 +23,7 @@ Session::Session(QObject* parent)
   const QSettings settings;
   m_pace.frameTimeMs = settings.value(QStringLiteral("frameTimeMs"), m_pace.frameTimeMs).toDouble();
   m_pace.selectionAgeMs = settings.value(QStringLiteral("selectionAgeMs"), m_pace.selectionAgeMs).toDouble();
+  m_pace.mostPoints = settings.value(QStringLiteral("mostPoints"), QVariant::fromValue<qulonglong>(m_pace.mostPoints)).toULongLong();
   m_settle.setSingleShot(true);
   m_settle.setInterval(120);
   connect(&m_settle, &QTimer::timeout, this, [this] {
@@ -190,6 +191,7 @@ void Session::setPace(const FramePace& pace) {
   QSettings settings;
   settings.setValue(QStringLiteral("frameTimeMs"), pace.frameTimeMs);
   settings.setValue(QStringLiteral("selectionAgeMs"), pace.selectionAgeMs);
+  settings.setValue(QStringLiteral("mostPoints"), QVariant::fromValue<qulonglong>(pace.mostPoints));
 }
 
 void Session::select(const SelectionState& selection) {

@@ -14,6 +14,8 @@
 #include <QSlider>
 #include <QVBoxLayout>
 
+#include "ui/figure_spin.h"
+
 namespace alidade {
 
 SettingsForm::SettingsForm(Session& session, QWidget* parent) : QScrollArea(parent), m_session(session) {
@@ -68,7 +70,7 @@ void SettingsForm::number(QFormLayout* form, const QString& name, const QString&
   constexpr int kSteps = 1000;
   slider->setRange(0, kSteps);
   slider->setMinimumWidth(60);
-  auto* spin = new QDoubleSpinBox;
+  auto* spin = new FigureSpin;
   spin->setRange(low, high);
   spin->setSingleStep(step);
   spin->setDecimals(decimals);
@@ -100,7 +102,7 @@ void SettingsForm::number(QFormLayout* form, const QString& name, const QString&
 
 void SettingsForm::figure(QFormLayout* form, const QString& name, const QString& tip, const QString& unit,
                           double low, double high, double step, int decimals, const Get& get, const Set& set) {
-  auto* spin = new QDoubleSpinBox;
+  auto* spin = new FigureSpin;
   spin->setRange(low, high);
   spin->setSingleStep(step);
   spin->setDecimals(decimals);

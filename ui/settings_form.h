@@ -44,12 +44,12 @@ class SettingsForm : public QScrollArea {
   void apply(const std::function<void(DisplaySettings&)>& edit, bool dragging = false);
   /// Ends the page; to be called once all rows are there.
   void finish();
+  /// Shows the settings as they are now; for what else a control depends on.
+  void refresh();
 
   Session& m_session;
 
  private:
-  void refresh();
-
   QVBoxLayout* m_layout = nullptr;
   std::vector<std::function<void(const DisplaySettings&)>> m_refreshers;
   bool m_refreshing = false;

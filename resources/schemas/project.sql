@@ -1,7 +1,7 @@
 -- SPDX-FileCopyrightText: 2026 the Alidade authors
 -- SPDX-License-Identifier: BSD-3-Clause
 --
--- The project file, version 4 (PRAGMA user_version; application_id is "ALID"). Lengths are metres in
+-- The project file, version 6 (PRAGMA user_version; application_id is "ALID"). Lengths are metres in
 -- the project's own system (E, N, up), angles radians, times seconds, pixels have OpenCV's origin.
 -- `position` keeps the order of a list from 0. Numbers without a type keep every bit of a double: a
 -- REAL column would turn -0.0 into 0. NULL in such a column is NaN. Text that is not UTF-8 is a blob.
@@ -28,6 +28,11 @@ CREATE TABLE point_style (
   box_on, box_e, box_n, box_h, box_size_x, box_size_y, box_size_z, box_heading_rad,
   section_on, section_e, section_n, section_h, section_azimuth_rad, section_elevation_rad, section_thickness_m,
   size_law, eye_dome, eye_dome_strength
+);
+
+-- Since version 6: the planes that cut points off; what lies on the side of their normal goes.
+CREATE TABLE point_cut (
+  position INTEGER PRIMARY KEY, is_on, e, n, h, azimuth_rad, elevation_rad
 );
 
 -- A source's path is relative to the project file; size in bytes; hash as io/project_store.h says.

@@ -65,9 +65,14 @@ struct RenderedFrame {
 };
 /// Median spacing of the coarsest scan in the frame, metres; 0 without a scan.
 double scanSpacing(const FrameDescription& frame);
-Result<RenderedFrame> renderFrame(const Project& project, const LoadedData& data, FrameId frame, int width, int height,
-                                  OverlayRenderer& renderer, PictureCache& pictures,
-                                  const SelectionState& selection = {});
+/// How a frame is wanted, beside the project's display settings.
+struct FrameWish {
+  int width = 0, height = 0;      ///< pixels; 0: the raw picture's
+  std::uint64_t pointBudget = 0;  ///< points drawn at most; 0: all
+  SelectionState selection = {};
+};
+Result<RenderedFrame> renderFrame(const Project& project, const LoadedData& data, FrameId frame, const FrameWish& wish,
+                                  OverlayRenderer& renderer, PictureCache& pictures);
 
 /// With the title block unless `bare`; atomic.
 Result<void> exportPicture(const RenderedFrame& frame, const std::string& path, bool bare);

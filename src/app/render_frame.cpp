@@ -95,8 +95,8 @@ TitleBlock titleOf(const Project& project, const Frame& frame, const CameraRecor
 
 }  // namespace
 
-Result<RenderedFrame> renderFrame(const Project& project, const LoadedData& data, FrameId frameId, int width, int height,
-                                  OverlayRenderer& renderer, PictureCache& pictures, const SelectionState& selection) {
+Result<RenderedFrame> renderFrame(const Project& project, const LoadedData& data, FrameId frameId, const FrameWish& wish,
+                                  OverlayRenderer& renderer, PictureCache& pictures) {
   const Frame* frame = project.findFrame(frameId);
   if (!frame) return fail("The project holds no such frame", project.path);
   std::shared_ptr<const ColourImage> image;
@@ -105,10 +105,11 @@ Result<RenderedFrame> renderFrame(const Project& project, const LoadedData& data
     if (!decoded) return fail(decoded.error());
     image = std::move(*decoded);
   }
-  auto description = describeFrame(project, data, frameId, std::move(image), selection);
+  auto description = describeFrame(project, data, frameId, std::move(image), wish.selection);
   if (!description) return fail(description.error());
-  description->width = width;
-  description->height = height;
+  description->width = wish.width;
+  description->height = wish.height;
+  description->pointBudget = wish.pointBudget;
 
   RenderedFrame rendered;
   rendered.description = std::move(*description);

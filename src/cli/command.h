@@ -64,6 +64,7 @@ CLI::Validator finiteNumber();
 CLI::Validator positiveNumber();
 CLI::Validator numberWithin(double low, double high);
 
+void addAdd(Verbs& verbs);
 void addCalibrate(Verbs& verbs);
 void addClean(Verbs& verbs);
 void addClock(Verbs& verbs);
@@ -74,6 +75,7 @@ void addInfo(Verbs& verbs);
 void addLevels(Verbs& verbs);
 void addNew(Verbs& verbs);
 void addOverlay(Verbs& verbs);
+void addPick(Verbs& verbs);
 void addRefine(Verbs& verbs);
 void addProjectPoints(Verbs& verbs);
 void addExportCameras(Verbs& verbs);

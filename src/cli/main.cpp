@@ -42,6 +42,7 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", std::string(softwareName()));
   app.require_subcommand(1);
   cli::Verbs verbs(app);
+  cli::addAdd(verbs);
   cli::addCalibrate(verbs);
   cli::addConvert(verbs);
   cli::addDemo(verbs);
@@ -53,6 +54,7 @@ int main(int argc, char** argv) {
   cli::addClock(verbs);
   cli::addRefine(verbs);
   cli::addProjectPoints(verbs);
+  cli::addPick(verbs);
   cli::addExportCameras(verbs);
   cli::addClean(verbs);
   cli::addRegister(verbs);

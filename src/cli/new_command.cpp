@@ -22,6 +22,33 @@ Result<void> checkTarget(const std::string& path, bool overwrite) {
   return {};
 }
 
+/// What the project holds now, for both verbs.
+Answer describe(const Project& project, const std::string& path, const std::vector<std::string>& notes) {
+  std::size_t posed = 0, withoutLens = 0;
+  for (const Frame& frame : project.frames) {
+    posed += frame.cameraFromWorld.has_value();
+    withoutLens += !frame.camera;
+  }
+  Answer answer;
+  answer.json = {{"project", path},
+                 {"scans", project.scans.size()},
+                 {"designs", project.designs.size()},
+                 {"cameras", project.cameras.size()},
+                 {"frames", project.frames.size()},
+                 {"frames_with_pose", posed},
+                 {"frames_without_camera", withoutLens},
+                 {"stake_points", project.stakePoints.size()},
+                 {"control_points", project.controlPoints.size()},
+                 {"notes", notes}};
+  const auto counted = [](std::size_t n, const char* what) { return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s"); };
+  answer.text = fmt::format("{}: {}, {}, {} ({} with a pose{}), {}\n", path, counted(project.scans.size(), "scan"),
+                            counted(project.designs.size(), "design"), counted(project.frames.size(), "frame"), posed,
+                            withoutLens == 0 ? std::string() : fmt::format(", {} without a lens", withoutLens),
+                            counted(project.stakePoints.size(), "stake-out point"));
+  for (const std::string& note : notes) answer.text += "  note: " + note + "\n";
+  return answer;
+}
+
 }  // namespace
 
 void addNew(Verbs& verbs) {
@@ -51,29 +78,7 @@ void addNew(Verbs& verbs) {
           made->notes.push_back("The project holds no scan, no design and no picture. Give --scan, --design, --images or --video");
         if (auto saved = saveProject(project, arguments->project); !saved) return fail(saved.error());
 
-        std::size_t posed = 0, withoutLens = 0;
-        for (const Frame& frame : project.frames) {
-          posed += frame.cameraFromWorld.has_value();
-          withoutLens += !frame.camera;
-        }
-        Answer answer;
-        answer.json = {{"project", arguments->project},
-                       {"scans", project.scans.size()},
-                       {"designs", project.designs.size()},
-                       {"cameras", project.cameras.size()},
-                       {"frames", project.frames.size()},
-                       {"frames_with_pose", posed},
-                       {"frames_without_camera", withoutLens},
-                       {"stake_points", project.stakePoints.size()},
-                       {"control_points", project.controlPoints.size()},
-                       {"notes", made->notes}};
-        const auto counted = [](std::size_t n, const char* what) { return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s"); };
-        answer.text = fmt::format("{}: {}, {}, {} ({} with a pose{}), {}\n", arguments->project, counted(project.scans.size(), "scan"),
-                                  counted(project.designs.size(), "design"), counted(project.frames.size(), "frame"), posed,
-                                  withoutLens == 0 ? std::string() : fmt::format(", {} without a lens", withoutLens),
-                                  counted(project.stakePoints.size(), "stake-out point"));
-        for (const std::string& note : made->notes) answer.text += "  note: " + note + "\n";
-        return answer;
+        return describe(project, arguments->project, made->notes);
       });
   command->add_option("project", arguments->project, "Project file to write, *.alidade")->required();
   command->add_option("--scan", arguments->inputs.scans, "Point clouds; an E57 file's pictures and cameras come along");
@@ -88,6 +93,30 @@ void addNew(Verbs& verbs) {
   command->add_option("--files", arguments->files, "Anything of the above, told apart by content");
   command->add_option("--name", arguments->name, "Name of the project");
   command->add_flag("--overwrite", arguments->overwrite, "Replace an existing project");
+}
+
+void addAdd(Verbs& verbs) {
+  struct Arguments {
+    std::string project;
+    std::vector<std::string> files;
+    bool dryRun = false;
+  };
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* command = verbs.add("add", "Add scans, designs, pictures, cameras or points to a project",
+                                [arguments](const Progress& progress) -> Result<Answer> {
+                                  auto project = loadProject(arguments->project);
+                                  if (!project) return fail(project.error());
+                                  auto made = addToProject(*project, arguments->files, progress);
+                                  if (!made) return fail(made.error());
+                                  if (!arguments->dryRun)
+                                    if (auto saved = saveProject(made->project, arguments->project); !saved) return fail(saved.error());
+                                  Answer answer = describe(made->project, arguments->project, made->notes);
+                                  answer.json["saved"] = !arguments->dryRun;
+                                  return answer;
+                                });
+  command->add_option("project", arguments->project, "Project file")->required();
+  command->add_option("files", arguments->files, "Files and folders, told apart by content")->required();
+  command->add_flag("--dry-run", arguments->dryRun, "Report only; leave the project as it is");
 }
 
 }  // namespace alidade::cli

@@ -3,17 +3,21 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
-#include <map>
+#include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "app/jobs.h"
+#include "app/shown_elements.h"
 #include "cli/command.h"
-#include "cli/point_style_options.h"
+#include "cli/display_options.h"
 #include "cli/project_input.h"
+#include "cloud/frame_pacer.h"
 #include "io/video_writer.h"
 
 namespace alidade::cli {
@@ -22,30 +26,14 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const std::map<std::string, LevelThreshold> kThresholds = {
-    {"node", LevelThreshold::ByDistance}, {"point", LevelThreshold::ByPoint}, {"uniform", LevelThreshold::Uniform}};
-
 struct Arguments {
-  std::string project, frame, output, passes, hidden, size, range, threshold;
-  std::optional<double> density, pointSize, time;
-  bool bare = false;
+  std::string project, frame, output, size, range, storey;
+  std::vector<std::string> hide;
+  std::optional<double> time;
+  std::uint64_t pointBudget = 0;
+  double frameTimeMs = 0;
+  bool bare = false, before = false;
 };
-
-Result<void> applyPasses(const std::string& list, DisplaySettings& display) {
-  display.imagePass = display.depthPass = display.designPass = display.pointPass = false;
-  std::size_t start = 0;
-  while (start <= list.size()) {
-    const auto comma = std::min(list.find(',', start), list.size());
-    const std::string pass = list.substr(start, comma - start);
-    if (pass == "image") display.imagePass = true;
-    else if (pass == "depth") display.depthPass = true;
-    else if (pass == "design") display.designPass = true;
-    else if (pass == "points") display.pointPass = true;
-    else return fail("There is no pass '" + pass + "'", "--passes", "Passes are image, depth, design and points");
-    start = comma + 1;
-  }
-  return {};
-}
 
 Result<std::pair<int, int>> parseSize(const std::string& size) {
   if (size.empty()) return std::pair{0, 0};
@@ -113,6 +101,45 @@ Result<void> checkOutput(const std::string& output, const Project& project, bool
   return {};
 }
 
+Result<std::uint64_t> parseBudget(const std::string& text) {
+  std::uint64_t points = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), points);
+  if (error != std::errc() || end != text.data() + text.size() || points == 0)
+    return fail("'" + text + "' is no number of points", "--point-budget", "Give a whole number from 1");
+  return points;
+}
+
+/// Only in memory: the project is not saved.
+Result<void> applyVisibility(const Arguments& arguments, OpenProject& open) {
+  bool found = arguments.storey.empty();
+  std::set<std::string> storeys;
+  for (Design& design : open.project.designs) {
+    const auto loaded = open.data.designs.find(design.id);
+    if (arguments.storey.empty() || loaded == open.data.designs.end()) continue;
+    if (showOnlyStorey(design, *loaded->second, arguments.storey)) found = true;
+    else design.visible = false;
+    for (const DesignElement& element : loaded->second->elements)
+      if (!element.storey.empty()) storeys.insert(element.storey);
+  }
+  if (!found)
+    return fail(fmt::format("No element is of the storey '{}'", arguments.storey), "--storey",
+                storeys.empty() ? "The designs have no storeys" : fmt::format("Give one of {}", fmt::join(storeys, ", ")));
+  for (const std::string& name : arguments.hide)
+    if (hideByName(open.project, open.data, name) == 0)
+      return fail(fmt::format("No scan, design or element is called '{}'", name), "--hide", "alidade-cli overlay --json lists the elements in the picture");
+  return {};
+}
+
+/// Before a refinement, for comparing: only in memory.
+void takeImportedPoses(Project& project) {
+  for (Frame& frame : project.frames) {
+    if (!frame.originalCameraFromWorld) continue;
+    frame.cameraFromWorld = frame.originalCameraFromWorld;
+    frame.poseSource = PoseSource::File;
+    frame.quality.reset();
+  }
+}
+
 Json elementsJson(const RenderedFrame& rendered) {
   Json list = Json::array();
   for (const ElementPixels& pixels : rendered.picture.elements) {
@@ -126,8 +153,7 @@ Json elementsJson(const RenderedFrame& rendered) {
 
 /// Draws a range of frames into an MP4, or into a folder of PNG files where the name has no ending. A frame without a
 /// pose is left out of the folder and shown as it is in the video, and told of.
-Result<Answer> runRange(const Arguments& arguments, const OpenProject& open, const std::pair<int, int>& size,
-                        OverlayRenderer& renderer, PictureCache& pictures, const Progress& progress) {
+Result<Answer> runRange(const Arguments& arguments, const OpenProject& open, FrameWish wish, OverlayRenderer& renderer, PictureCache& pictures, const Progress& progress) {
   namespace fs = std::filesystem;
   const auto range = parseRange(arguments.range);
   if (!range) return fail(range.error());
@@ -139,13 +165,17 @@ Result<Answer> runRange(const Arguments& arguments, const OpenProject& open, con
   if (folder && !fs::create_directory(arguments.output, code) && code)
     return fail("The folder cannot be made: " + code.message(), arguments.output, "Choose another name");
   std::optional<VideoWriter> writer;
+  FramePacer pacer;
+  const FramePace pace{arguments.frameTimeMs, arguments.pointBudget};
   std::size_t written = 0;
   Json skipped = Json::array();
   for (std::size_t i = range->first; i <= range->last; i += range->step) {
     if (progress.cancelled()) return fail(cancelledError());
     progress.report(static_cast<double>(i - range->first) / static_cast<double>(range->last - range->first + 1), "Drawing");
     if (i + range->step <= range->last) pictures.expect(open.project, {frames[i].id, frames[i + range->step].id});
-    auto rendered = renderFrame(open.project, open.data, frames[i].id, size.first, size.second, renderer, pictures);
+    wish.pointBudget = pacer.begin(pace);
+    auto rendered = renderFrame(open.project, open.data, frames[i].id, wish, renderer, pictures);
+    if (rendered) pacer.end(std::max(rendered->picture.pointsJudged, rendered->picture.pointsDrawn));
     if (!rendered && frames[i].cameraFromWorld) return fail(rendered.error());
     if (!rendered) skipped.push_back(frames[i].name);
     if (!rendered && folder) continue;
@@ -178,7 +208,7 @@ Result<Answer> runRange(const Arguments& arguments, const OpenProject& open, con
   return answer;
 }
 
-Result<Answer> run(const Arguments& arguments, const PointStyleOptions& style, const Progress& progress) {
+Result<Answer> run(const Arguments& arguments, const DisplayOptions& display, const Progress& progress) {
   const auto check = [&](const Project& project) { return checkOutput(arguments.output, project, !arguments.range.empty()); };
   const std::string frame = arguments.frame.empty() ? "0" : arguments.frame;
   auto open = openProject(arguments.project, frame, true, progress.part(0.0, arguments.range.empty() ? 0.8 : 0.3), check);
@@ -188,26 +218,19 @@ Result<Answer> run(const Arguments& arguments, const PointStyleOptions& style, c
     if (!at) return fail(at.error());
     open->frame = open->project.frames[*at].id;
   }
-  DisplaySettings& display = open->project.display;
-  if (arguments.density) display.density = *arguments.density;
-  if (!arguments.threshold.empty()) display.levelThreshold = kThresholds.at(arguments.threshold);
-  if (arguments.pointSize) display.pointSize = *arguments.pointSize;
-  if (!arguments.passes.empty())
-    if (auto done = applyPasses(arguments.passes, display); !done) return fail(done.error());
-  if (arguments.hidden == "hide") display.hidden = HiddenStyle::Hide;
-  if (arguments.hidden == "ghost") display.hidden = HiddenStyle::Ghost;
-  if (arguments.hidden == "dash") display.hidden = HiddenStyle::Dash;
-  if (auto done = style.apply(display.points); !done) return fail(done.error());
+  if (auto done = display.apply(open->project.display); !done) return fail(done.error());
+  if (auto done = applyVisibility(arguments, *open); !done) return fail(done.error());
+  if (arguments.before) takeImportedPoses(open->project);
   const auto size = parseSize(arguments.size);
   if (!size) return fail(size.error());
 
   auto renderer = OverlayRenderer::create();
   if (!renderer) return fail(renderer.error());
   PictureCache pictures;
-  if (!arguments.range.empty()) return runRange(arguments, *open, *size, **renderer, pictures, progress.part(0.3, 1));
+  const FrameWish wish{size->first, size->second, arguments.pointBudget};
+  if (!arguments.range.empty()) return runRange(arguments, *open, wish, **renderer, pictures, progress.part(0.3, 1));
   progress.report(0.8, "Drawing");
-  auto rendered =
-      renderFrame(open->project, open->data, open->frame, size->first, size->second, **renderer, pictures);
+  auto rendered = renderFrame(open->project, open->data, open->frame, wish, **renderer, pictures);
   if (!rendered) return fail(rendered.error());
   if (auto saved = exportPicture(*rendered, arguments.output, arguments.bare); !saved) return fail(saved.error());
 
@@ -232,29 +255,28 @@ Result<Answer> run(const Arguments& arguments, const PointStyleOptions& style, c
 
 void addOverlay(Verbs& verbs) {
   auto arguments = std::make_shared<Arguments>();
-  auto style = std::make_shared<std::optional<PointStyleOptions>>();
+  auto display = std::make_shared<std::optional<DisplayOptions>>();
   CLI::App* command =
       verbs.add("overlay", "Draw the design over a frame and save the picture",
-                [arguments, style](const Progress& progress) { return run(*arguments, **style, progress); });
-  style->emplace(*command);
+                [arguments, display](const Progress& progress) { return run(*arguments, **display, progress); });
   command->add_option("project", arguments->project, "Project file")->required();
   auto* which = command->add_option_group("which frame");
   which->add_option("--frame", arguments->frame, "Name, or index from 0");
   which->add_option("--time", arguments->time, "Seconds: the frame nearest to it")->check(finiteNumber());
-  which->add_option("--frames", arguments->range, "FIRST:LAST[:STEP], indices from 0: a video (.mp4), or a folder of pictures")
+  auto* range = which->add_option("--frames", arguments->range, "FIRST:LAST[:STEP], indices from 0: a video (.mp4), or a folder of pictures")
       ->check(checkedBy(parseRange, "RANGE"));
   which->require_option(1);
   command->add_option("-o,--output", arguments->output, "PNG to write; MP4 or folder with --frames")->required();
-  command->add_option("--density", arguments->density, "Point density, 0 to 1")->check(numberWithin(0.0, 1.0));
-  command->add_option("--threshold", arguments->threshold, "What is thinned by one distance: a node, a point, or all alike")
-      ->check(CLI::IsMember({"node", "point", "uniform"}));
-  command->add_option("--point-size", arguments->pointSize, "Factor on the automatic point size")->check(numberWithin(0.1, 20.0));
-  command->add_option("--passes", arguments->passes, "Of image,depth,design,points")
-      ->check(checkedBy([](const std::string& list) { DisplaySettings ignored; return applyPasses(list, ignored); }, "LIST"));
-  command->add_option("--hidden", arguments->hidden, "Parts that the scan hides")->check(CLI::IsMember({"hide", "ghost", "dash"}));
   command->add_option("--size", arguments->size, "WIDTHxHEIGHT; the raw picture's where not given")
       ->check(checkedBy(parseSize, "SIZE"));
   command->add_flag("--bare", arguments->bare, "Without the title block");
+  command->add_flag("--before", arguments->before, "With the poses as they were imported, where a refinement replaced them");
+  command->add_option("--storey", arguments->storey, "Of the design only this storey's elements");
+  command->add_option("--hide", arguments->hide, "A scan, design or element that is left out, again for more: name, or an element's global id")->allow_extra_args(false);
+  command->add_option("--point-budget", arguments->pointBudget, "Draw with at most so many points")->check(checkedBy(parseBudget, "POINTS"));
+  command->add_option("--frame-time", arguments->frameTimeMs, "With --frames: draw with as many points as keep a frame to so many milliseconds")
+      ->check(numberWithin(1.0, 10'000.0))->needs(range);
+  display->emplace(*command);
 }
 
 }  // namespace alidade::cli

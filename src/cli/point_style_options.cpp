@@ -3,13 +3,13 @@
 
 #include "cli/point_style_options.h"
 
-#include <charconv>
-#include <cmath>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "cli/command.h"
+#include "cli/number_list.h"
 #include "geometry/angle.h"
 #include "survey/classification.h"
 
@@ -28,26 +28,6 @@ const std::map<std::string, ColourRamp> kRamps = {
 const std::map<std::string, PointSizeLaw> kSizes = {
     {"spacing", PointSizeLaw::Spacing}, {"screen", PointSizeLaw::Screen}, {"fixed", PointSizeLaw::Fixed}};
 
-/// "1,2.5,-3" as numbers; nothing where a part is none or not finite.
-Result<std::vector<double>> numbers(const std::string& text, std::size_t least, std::size_t most, const char* option,
-                                    const char* advice) {
-  std::vector<double> values;
-  const char* at = text.data();
-  const char* const end = at + text.size();
-  while (true) {
-    double value = 0;
-    const auto read = std::from_chars(at, end, value);
-    if (read.ec != std::errc() || !std::isfinite(value)) return fail("'" + text + "' is no list of numbers", option, advice);
-    values.push_back(value);
-    at = read.ptr;
-    if (at == end) break;
-    if (*at++ != ',') return fail("'" + text + "' is no list of numbers", option, advice);
-  }
-  if (values.size() < least || values.size() > most)
-    return fail(std::to_string(values.size()) + " numbers are given", option, advice);
-  return values;
-}
-
 Result<std::bitset<256>> parseClasses(const std::string& text) {
   const auto classes = classesOfText(text);
   if (!classes) return fail("'" + text + "' is no list of classes", "--hide-classes", "Give codes from 0 to 255, such as 7,18");
@@ -55,7 +35,7 @@ Result<std::bitset<256>> parseClasses(const std::string& text) {
 }
 
 Result<ClipBox> parseBox(const std::string& text) {
-  const auto v = numbers(text, 6, 7, "--clip-box",
+  const auto v = numberList(text, 6, 7, "--clip-box",
                          "Give E,N,H of the middle, then width, length, height in metres, then a heading in degrees if turned");
   if (!v) return fail(v.error());
   ClipBox box{true, {(*v)[0], (*v)[1], (*v)[2]}, {(*v)[3], (*v)[4], (*v)[5]}, 0};
@@ -66,7 +46,7 @@ Result<ClipBox> parseBox(const std::string& text) {
 }
 
 Result<Section> parseSection(const std::string& text) {
-  const auto v = numbers(text, 5, 6, "--section",
+  const auto v = numberList(text, 5, 6, "--section",
                          "Give E,N,H of a point on it, the azimuth that it faces in degrees, its thickness in metres "
                          "(0: all behind it), then the elevation of its normal in degrees if tilted");
   if (!v) return fail(v.error());
@@ -76,8 +56,16 @@ Result<Section> parseSection(const std::string& text) {
   return section;
 }
 
+Result<CutPlane> parseCut(const std::string& text) {
+  const auto v = numberList(text, 4, 5, "--clip-plane",
+                            "Give E,N,H of a point on it and the azimuth that it faces in degrees, then the elevation of its normal in "
+                            "degrees if tilted; what lies in front of it is cut off");
+  if (!v) return fail(v.error());
+  return CutPlane{true, {(*v)[0], (*v)[1], (*v)[2]}, radiansFromDegrees((*v)[3]), v->size() == 5 ? radiansFromDegrees((*v)[4]) : 0};
+}
+
 Result<std::pair<double, double>> parseRange(const std::string& text) {
-  const auto v = numbers(text, 2, 2, "--range", "Give LOW,HIGH in the value's own unit");
+  const auto v = numberList(text, 2, 2, "--range", "Give LOW,HIGH in the value's own unit");
   if (!v) return fail(v.error());
   if (!((*v)[0] < (*v)[1])) return fail("The range is empty", "--range", "Give LOW below HIGH");
   return std::pair{(*v)[0], (*v)[1]};
@@ -93,7 +81,9 @@ std::vector<std::string> namesOf(const auto& map) {
 
 struct PointStyleOptions::Given {
   std::string colourBy, ramp, range, classes, box, section, size;
+  std::vector<std::string> cuts;
   bool eyeDome = false;
+  std::optional<double> eyeDomeStrength;
 };
 
 PointStyleOptions::PointStyleOptions(CLI::App& command) : m_given(std::make_shared<Given>()) {
@@ -107,8 +97,11 @@ PointStyleOptions::PointStyleOptions(CLI::App& command) : m_given(std::make_shar
       ->check(checkedBy(parseBox, "BOX"));
   command.add_option("--section", m_given->section, "Use only a slab: E,N,H,AZIMUTH,THICKNESS[,ELEVATION]")
       ->check(checkedBy(parseSection, "SLAB"));
+  command.add_option("--clip-plane", m_given->cuts, "Cut off what lies in front of a plane, again for more: E,N,H,AZIMUTH[,ELEVATION]")
+      ->check(checkedBy(parseCut, "PLANE"))->allow_extra_args(false);
   command.add_option("--size-law", m_given->size, "How large points are drawn")->check(CLI::IsMember(namesOf(kSizes)));
   command.add_flag("--eye-dome", m_given->eyeDome, "Eye-Dome lighting on the points");
+  command.add_option("--eye-dome-strength", m_given->eyeDomeStrength, "Of the Eye-Dome lighting; switches it on")->check(numberWithin(0.1, 5.0));
 }
 
 Result<void> PointStyleOptions::apply(PointStyle& style) const {
@@ -116,7 +109,8 @@ Result<void> PointStyleOptions::apply(PointStyle& style) const {
   if (!given.colourBy.empty()) style.colourBy = kColours.at(given.colourBy);
   if (!given.ramp.empty()) style.ramp = kRamps.at(given.ramp);
   if (!given.size.empty()) style.sizeLaw = kSizes.at(given.size);
-  if (given.eyeDome) style.eyeDome = true;
+  if (given.eyeDome || given.eyeDomeStrength) style.eyeDome = true;
+  if (given.eyeDomeStrength) style.eyeDomeStrength = *given.eyeDomeStrength;
   if (!given.range.empty()) {
     const auto range = parseRange(given.range);
     if (!range) return fail(range.error());
@@ -137,6 +131,12 @@ Result<void> PointStyleOptions::apply(PointStyle& style) const {
     const auto section = parseSection(given.section);
     if (!section) return fail(section.error());
     style.section = *section;
+  }
+  if (!given.cuts.empty()) style.cuts.clear();  // those of the project, as with the box and the section
+  for (const std::string& text : given.cuts) {
+    const auto cut = parseCut(text);
+    if (!cut) return fail(cut.error());
+    style.cuts.push_back(*cut);
   }
   return {};
 }

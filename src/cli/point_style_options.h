@@ -16,7 +16,6 @@ namespace alidade::cli {
 /// stays as the project has it.
 class PointStyleOptions {
  public:
-  /// Declares --colour-by, --ramp, --range, --hide-classes, --clip-box, --section, --size-law, --eye-dome.
   explicit PointStyleOptions(CLI::App& command);
 
   Result<void> apply(PointStyle& style) const;

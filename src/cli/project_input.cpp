@@ -55,4 +55,14 @@ Result<OpenProject> openProject(const std::string& path, const std::string& fram
   return open;
 }
 
+const char* stateName(Visibility state) {
+  switch (state) {
+    case Visibility::Visible: return "visible";
+    case Visibility::Hidden: return "hidden";
+    case Visibility::Unknown: return "unknown";
+    case Visibility::Outside: return "outside";
+  }
+  return "";
+}
+
 }  // namespace alidade::cli

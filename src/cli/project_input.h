@@ -9,6 +9,7 @@
 #include "app/workspace.h"
 #include "base/error.h"
 #include "base/progress.h"
+#include "raster/occlusion.h"
 #include "survey/project.h"
 
 namespace alidade::cli {
@@ -23,5 +24,8 @@ struct OpenProject {
 };
 Result<OpenProject> openProject(const std::string& path, const std::string& frame, bool withData, const Progress& progress,
                                 const std::function<Result<void>(const Project&)>& check = {});
+
+/// "visible", "hidden", "unknown", "outside".
+const char* stateName(Visibility state);
 
 }  // namespace alidade::cli

@@ -27,13 +27,14 @@ FramePacer::FramePacer() : FramePacer(millisecondsNow) {}
 
 FramePacer::FramePacer(Clock clock) : m_clock(std::move(clock)) {}
 
-std::uint64_t FramePacer::begin(double wantedMs) {
+std::uint64_t FramePacer::begin(const std::optional<FramePace>& pace) {
   m_start = m_clock();
-  m_wanted = wantedMs;
-  if (!(m_wanted > 0)) return 0;
+  m_wanted = pace ? pace->frameTimeMs : 0;
+  const std::uint64_t most = pace ? pace->mostPoints : 0;
+  if (!(m_wanted > 0)) return most;
   // The first frame that moves has the still one before it to go by.
-  if (m_budget == 0 && m_lastMs > wantedMs) m_budget = scaled(m_lastPoints, wantedMs / m_lastMs);
-  return m_budget;
+  if (m_budget == 0 && m_lastMs > m_wanted) m_budget = scaled(m_lastPoints, m_wanted / m_lastMs);
+  return m_budget > 0 && most > 0 ? std::min(m_budget, most) : std::max(m_budget, most);
 }
 
 void FramePacer::end(std::uint64_t points) {

@@ -5,12 +5,14 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 
 namespace alidade {
 
 /// How quick the frames of a moving view are wanted; a matter of the machine, not of the project.
 struct FramePace {
   double frameTimeMs = 40;    ///< fewer points are used to keep it; 0: all, however long it takes
+  std::uint64_t mostPoints = 0;  ///< in any case no more; 0: no such limit
   double selectionAgeMs = 0;  ///< the points chosen for one frame serve others for so long (Zhang 2020); 0: each chooses its own
   friend bool operator==(const FramePace&, const FramePace&) = default;
 };
@@ -25,8 +27,8 @@ class FramePacer {
   FramePacer();
   explicit FramePacer(Clock clock);
 
-  /// Before a frame: how many points it may use; 0: all. `wantedMs` 0: the picture is still, or may take its time.
-  std::uint64_t begin(double wantedMs);
+  /// Before a frame: how many points it may use; 0: all. Without a pace the picture is still and may take its time.
+  std::uint64_t begin(const std::optional<FramePace>& pace);
   /// After it: how many it used.
   void end(std::uint64_t points);
 

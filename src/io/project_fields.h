@@ -47,6 +47,10 @@ struct FrameTrajectoryRow {
   std::int64_t parent = 0;
   TrajectoryId trajectory;
 };
+/// One of PointStyle::cuts.
+struct PointCutRow {
+  CutPlane cut;
+};
 struct HiddenElementRow {
   std::int64_t parent = 0;
   std::string globalId;
@@ -155,6 +159,14 @@ void visit(V& v, PointStyle& p) {
   v.choice("size_law", p.sizeLaw, {"spacing", "screen", "fixed"});
   v("eye_dome", p.eyeDome);
   v("eye_dome_strength", p.eyeDomeStrength);
+}
+
+template <class V>
+void visit(V& v, PointCutRow& row) {
+  v("is_on", row.cut.on);
+  visitVector(v, {"e", "n", "h"}, row.cut.point);
+  v("azimuth_rad", row.cut.azimuthRad);
+  v("elevation_rad", row.cut.elevationRad);
 }
 
 template <class V>

@@ -117,6 +117,12 @@ Result<std::vector<T>> readRows(const ProjectDatabase& database, const std::stri
   return rows;
 }
 
+Result<void> writePointStyle(const ProjectDatabase& database, const PointStyle& style) {
+  std::vector<PointCutRow> cuts;
+  for (const CutPlane& cut : style.cuts) cuts.push_back({cut});
+  return writeRows(database, "point_style", std::vector<PointStyle>{style}).and_then([&] { return writeRows(database, "point_cut", cuts); });
+}
+
 Result<void> writeScans(const ProjectDatabase& database, const Project& project) {
   std::vector<ScanAttributeRow> attributes;
   std::vector<ScanStationRow> stations;
@@ -184,7 +190,7 @@ Result<void> writeAll(const ProjectDatabase& database, const Project& project) {
 
   return writeRows(database, "project", std::vector<ProjectRow>{{project.name, project.crs}})
       .and_then([&] { return writeRows(database, "display", std::vector<DisplaySettings>{project.display}); })
-      .and_then([&] { return writeRows(database, "point_style", std::vector<PointStyle>{project.display.points}); })
+      .and_then([&] { return writePointStyle(database, project.display.points); })
       .and_then([&] { return writeScans(database, project); })
       .and_then([&] { return writeDesigns(database, project); })
       .and_then([&] { return writeCameras(database, project); })
@@ -231,7 +237,7 @@ Result<void> checkHeader(const std::string& path) {
 
 /// Tables that older versions did not write; what they hold keeps its defaults then.
 bool isOptional(const std::string& table) {
-  static const std::set<std::string> later = {"point_style", "camera_shutter", "camera_mount", "video_timing", "trajectory",
+  static const std::set<std::string> later = {"point_style", "point_cut", "camera_shutter", "camera_mount", "video_timing", "trajectory",
                                               "trajectory_pose", "frame_trajectory"};
   return later.contains(table);
 }
@@ -313,6 +319,9 @@ Result<void> readHead(const ProjectDatabase& database, const std::string& path, 
   if (styles->size() != 1)
     return fail("The project file is damaged: it must have one point style", path, "Open a backup of the project");
   project.display.points = styles->front();
+  std::vector<PointCutRow> cuts;
+  if (auto read = readInto(database, path, "point_cut", cuts); !read) return read;
+  for (const PointCutRow& row : cuts) project.display.points.cuts.push_back(row.cut);
   return {};
 }
 

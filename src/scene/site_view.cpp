@@ -171,7 +171,7 @@ void SiteView::release() {
 void SiteView::paint(unsigned framebuffer) {
   Impl& d = *m_impl;
   if (!d.target.attached()) return;
-  const std::uint64_t budget = d.pacer.begin(d.moving ? d.pace.frameTimeMs : 0);
+  const std::uint64_t budget = d.pacer.begin(d.moving ? std::optional(d.pace) : std::nullopt);
   d.applyCamera();
   d.clouds.draw(d.camera, budget);
   d.stakes.placeLabels(d.camera);

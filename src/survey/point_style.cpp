@@ -3,13 +3,23 @@
 
 #include "survey/point_style.h"
 
+#include <algorithm>
 #include <cmath>
+
+#include "geometry/bearing.h"
 
 namespace alidade {
 
 glm::dvec3 Section::normal() const {
-  return {std::sin(azimuthRad) * std::cos(elevationRad), std::cos(azimuthRad) * std::cos(elevationRad),
-          std::sin(elevationRad)};
+  return directionOf({azimuthRad, elevationRad});
+}
+
+glm::dvec3 CutPlane::normal() const {
+  return directionOf({azimuthRad, elevationRad});
+}
+
+bool PointStyle::filters() const {
+  return hiddenClasses.any() || clipBox.on || section.on || std::ranges::any_of(cuts, &CutPlane::on);
 }
 
 std::vector<ClipPlane> PointStyle::clipPlanes() const {
@@ -25,8 +35,10 @@ std::vector<ClipPlane> PointStyle::clipPlanes() const {
     slab({0, 0, 1}, clipBox.centre, 0.5 * clipBox.size.z);
   }
   if (section.on && section.thicknessM > 0) slab(section.normal(), section.point, 0.5 * section.thicknessM);
-  if (section.on && !(section.thicknessM > 0))
-    planes.push_back({-section.normal(), -glm::dot(section.normal(), section.point)});
+  const auto behind = [&](const glm::dvec3& normal, const glm::dvec3& point) { planes.push_back({-normal, -glm::dot(normal, point)}); };
+  if (section.on && !(section.thicknessM > 0)) behind(section.normal(), section.point);
+  for (const CutPlane& cut : cuts)
+    if (cut.on) behind(cut.normal(), cut.point);
   return planes;
 }
 

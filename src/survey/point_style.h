@@ -45,6 +45,17 @@ struct Section {
   friend bool operator==(const Section&, const Section&) = default;
 };
 
+/// Cuts off what lies in front of a plane, on the side that its normal points to.
+struct CutPlane {
+  bool on = true;
+  glm::dvec3 point{0};      ///< on the plane, world, metres
+  double azimuthRad = 0;    ///< of its normal, clockwise from north
+  double elevationRad = 0;  ///< of its normal, above the horizon
+
+  glm::dvec3 normal() const;
+  friend bool operator==(const CutPlane&, const CutPlane&) = default;
+};
+
 /// Points with dot(normal, p) >= offset stay.
 struct ClipPlane {
   glm::dvec3 normal{0, 0, 1};  ///< world, unit
@@ -62,14 +73,15 @@ struct PointStyle {
   std::bitset<256> hiddenClasses;  ///< ASPRS LAS 1.4 R15, table 17
   ClipBox clipBox;
   Section section;
+  std::vector<CutPlane> cuts;  ///< each cuts what the others leave
 
   PointSizeLaw sizeLaw = PointSizeLaw::Spacing;
   bool eyeDome = false;  ///< Eye-Dome lighting (Boucheny 2009): depth steps darken
   double eyeDomeStrength = 1.0;
 
-  /// Box and section as planes: at most 8.
+  /// Box, section and cuts as planes.
   std::vector<ClipPlane> clipPlanes() const;
-  bool filters() const { return hiddenClasses.any() || clipBox.on || section.on; }
+  bool filters() const;
 
   friend bool operator==(const PointStyle&, const PointStyle&) = default;
 };

@@ -78,6 +78,108 @@ TEST(CommandLine, DensityDrawsFewerPointsAndNothingAtZero) {
   EXPECT_EQ(last, 0u);
 }
 
+namespace {
+
+std::uint64_t pointsDrawn(const std::string& options) {
+  const auto outcome = alidadeCli("overlay --json " + demoProject() + " --frame 0 --size 240x180 --passes points " + options + " -o " +
+                                  quoted(scratch() / "points.png"));
+  EXPECT_EQ(outcome.exitCode, 0) << options << outcome.errors << outcome.output;
+  return outcome.exitCode == 0 ? outcome.json()["points_drawn"].get<std::uint64_t>() : 0;
+}
+
+}  // namespace
+
+TEST(CommandLine, ClipPlanesCutAndTheirSidesMakeTheWhole) {
+  const std::uint64_t all = pointsDrawn("");
+  const std::uint64_t west = pointsDrawn("--clip-plane 2683512,1247800,412,90"), east = pointsDrawn("--clip-plane 2683512,1247800,412,270");
+  EXPECT_GT(west, 0u);
+  EXPECT_GT(east, 0u);
+  EXPECT_EQ(west + east, all);
+  const std::uint64_t corner = pointsDrawn("--clip-plane 2683512,1247800,412,90 --clip-plane 2683512,1247800,412,0,90");
+  EXPECT_GT(corner, 0u);
+  EXPECT_LT(corner, west);
+  const auto wrong = alidadeCli("overlay " + demoProject() + " --frame 0 --clip-plane 1,2,3 -o " + quoted(scratch() / "no.png"));
+  EXPECT_EQ(wrong.exitCode, 2);
+  EXPECT_NE(wrong.errors.find("azimuth"), std::string::npos) << wrong.errors;
+}
+
+TEST(CommandLine, DensityByAreaAndABudgetOfPointsAreHeld) {
+  const std::uint64_t dense = pointsDrawn("--points-per-square-metre 1e6"), sparse = pointsDrawn("--points-per-square-metre 1");
+  EXPECT_GT(sparse, 0u);
+  EXPECT_LT(2 * sparse, dense);
+  EXPECT_LT(sparse, pointsDrawn("--density-by pixel"));
+  const std::uint64_t few = pointsDrawn("--point-budget 5000");
+  EXPECT_LE(few, 5000u);
+  EXPECT_GT(few, 3000u);
+  for (const char* options : {"--point-budget 0", "--point-budget 1.5", "--point-budget -3", "--frame-time 40", "--with glitter",
+                              "--points-per-square-metre 5 --density-by pixel", "--light 10,100"}) {
+    const auto wrong = alidadeCli("overlay " + demoProject() + " --frame 0 " + options + " -o " + quoted(scratch() / "no.png"));
+    EXPECT_EQ(wrong.exitCode, 2) << options << wrong.errors;
+  }
+}
+
+TEST(CommandLine, ARangeKeepsToABudgetOrATime) {
+  const auto folder = scratch() / "paced";
+  const auto outcome = alidadeCli("overlay --json " + demoProject() + " --frames 0:3 --size 240x180 --passes points --point-budget 2000 --frame-time 50 -o " +
+                                  quoted(folder));
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.errors << outcome.output;
+  EXPECT_EQ(outcome.json()["frames"], 4);
+}
+
+TEST(CommandLine, WhatIsPickedProjectsBackToItsPixel) {
+  const auto picked = alidadeCli("pick --json " + demoProject() + " --frame 0", "240 200\n120.25,260.5 # left\n-5 3\n");
+  ASSERT_EQ(picked.exitCode, 0) << picked.errors << picked.output;
+  const auto points = picked.json()["points"];
+  ASSERT_EQ(points.size(), 3u);
+  EXPECT_TRUE(points[2]["world_m"].is_null());
+  int seen = 0;
+  for (int i = 0; i < 2; ++i) {
+    if (points[i]["world_m"].is_null()) continue;
+    ++seen;
+    std::ostringstream world;
+    world.precision(12);
+    for (const auto& axis : points[i]["world_m"]) world << axis.get<double>() << " ";
+    const auto back = alidadeCli("project-points --json " + demoProject() + " --frame 0", world.str()).json()["points"][0];
+    EXPECT_NEAR(back["u_px"], points[i]["u_px"], 0.02);
+    EXPECT_NEAR(back["v_px"], points[i]["v_px"], 0.02);
+    EXPECT_NEAR(back["depth_m"], points[i]["depth_m"], 0.001);
+  }
+  EXPECT_GT(seen, 0);
+  EXPECT_EQ(alidadeCli("pick " + demoProject() + " --frame 0", "12\n").exitCode, 1);
+}
+
+TEST(CommandLine, AddsToAProjectWhatANewOneWouldHave) {
+  const auto project = scratch() / "grown.alidade";
+  ASSERT_EQ(alidadeCli("new " + quoted(project) + " --scan " + quoted(smallDemo() / "scan.las")).exitCode, 0);
+  const auto dry = alidadeCli("add --json --dry-run " + quoted(project) + " " + quoted(smallDemo() / "images") + " " + quoted(smallDemo() / "sparse"));
+  ASSERT_EQ(dry.exitCode, 0) << dry.errors << dry.output;
+  EXPECT_EQ(dry.json()["frames_with_pose"], 4);
+  EXPECT_EQ(alidadeCli("info --json " + quoted(project)).json()["files"][0]["frames"], 0);
+  const auto added = alidadeCli("add --json " + quoted(project) + " " + quoted(smallDemo() / "images") + " " + quoted(smallDemo() / "sparse"));
+  ASSERT_EQ(added.exitCode, 0) << added.errors << added.output;
+  EXPECT_TRUE(added.json()["saved"]);
+  EXPECT_EQ(alidadeCli("info --json " + quoted(project)).json()["files"][0]["frames_with_pose"], 4);
+  EXPECT_EQ(alidadeCli("add " + quoted(project)).exitCode, 2);
+}
+
+TEST(CommandLine, LeavesElementsAndStoreysOut) {
+  const auto elements = [](const std::string& options) {
+    const auto outcome = alidadeCli("overlay --json " + demoProject() + " --frame 0 --size 240x180 " + options + " -o " + quoted(scratch() / "some.png"));
+    EXPECT_EQ(outcome.exitCode, 0) << options << outcome.errors << outcome.output;
+    return outcome.json()["elements"];
+  };
+  const auto all = elements("");
+  ASSERT_GT(all.size(), 3u);
+  const std::string id = all[0]["global_id"], storey = all[0]["storey"];
+  for (const auto& element : elements("--hide '" + id + "'")) EXPECT_NE(element["global_id"], id);
+  const auto level = elements("--storey '" + storey + "'");
+  EXPECT_FALSE(level.empty());
+  for (const auto& element : level) EXPECT_EQ(element["storey"], storey);
+  const auto wrong = alidadeCli("overlay --json " + demoProject() + " --frame 0 --storey Attic -o " + quoted(scratch() / "no.png"));
+  EXPECT_EQ(wrong.exitCode, 1);
+  EXPECT_NE(wrong.json()["error"]["advice"].get<std::string>().find(storey), std::string::npos);
+}
+
 TEST(CommandLine, RefinesAPoseFromObservationsAndRemembersIt) {
   const auto observations = smallDemo() / "observations.csv";
   ASSERT_TRUE(std::filesystem::exists(observations));

@@ -126,7 +126,7 @@ TEST(DemoSite, VisibleAndHiddenAgreeWithTheTruthForNineteenPixelsInTwenty) {
     for (ScanLayer& layer : layers) layer.surface = nullptr;
   Score score, played, playedByPoints;
   for (int i = 0; i < kFrames; ++i) {
-    const auto rendered = renderFrame(*project, loaded->data, project->frames[i].id, 0, 0, **renderer, pictures);
+    const auto rendered = renderFrame(*project, loaded->data, project->frames[i].id, {}, **renderer, pictures);
     ASSERT_TRUE(rendered) << rendered.error().text();
     const fs::path truth = folder / "truth";
     const auto visibility = readRaw<std::uint8_t>(truth / fmt::format("visibility.{:04}.u8", i));

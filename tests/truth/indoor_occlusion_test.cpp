@@ -66,7 +66,7 @@ TEST(IndoorVideo, ABoxUnderTheTableIsHiddenInEveryFrameThatLooksAtIt) {
   PictureCache pictures;
   const auto tableFrame = made->project.frameByNameOrIndex(kTableFrame);
   ASSERT_TRUE(tableFrame);
-  const auto seen = renderFrame(made->project, loaded->data, *tableFrame, 0, 0, **renderer, pictures);
+  const auto seen = renderFrame(made->project, loaded->data, *tableFrame, {}, **renderer, pictures);
   ASSERT_TRUE(seen) << seen.error().text();
   const auto table = readoutAt(*seen, kTablePixel);
   ASSERT_TRUE(table.world) << "the table's top is not in the scan there";
@@ -81,7 +81,7 @@ TEST(IndoorVideo, ABoxUnderTheTableIsHiddenInEveryFrameThatLooksAtIt) {
   int frames = 0;
   std::uint64_t hidden = 0, visible = 0, unknown = 0;
   for (const Frame& frame : withBox->project.frames) {
-    const auto rendered = renderFrame(withBox->project, boxData->data, frame.id, 0, 0, **renderer, pictures);
+    const auto rendered = renderFrame(withBox->project, boxData->data, frame.id, {}, **renderer, pictures);
     ASSERT_TRUE(rendered) << rendered.error().text();
     if (const char* folder = std::getenv("ALIDADE_TEST_PICTURES")) {
       ASSERT_TRUE(writePng(rendered->picture.colour, (fs::path(folder) / ("indoor_" + frame.name)).string()));

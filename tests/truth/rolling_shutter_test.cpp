@@ -85,7 +85,7 @@ TEST(RollingShutterTruth, APickLiesOnTheRayOfItsOwnRow) {
   const auto missWith = [&](double readoutSecs) {
     for (CameraRecord& camera : project->cameras) camera.readoutSecs = readoutSecs;
     const Frame& frame = project->frames[kFrame];
-    const auto rendered = renderFrame(*project, loaded->data, frame.id, 0, 0, **renderer, pictures);
+    const auto rendered = renderFrame(*project, loaded->data, frame.id, {}, **renderer, pictures);
     EXPECT_TRUE(rendered) << rendered.error().text();
     return rendered ? medianMiss(*project, *rendered, frame, truth) : 1e9;
   };

@@ -6,6 +6,7 @@
 
 #include <QCheckBox>
 #include <QComboBox>
+#include <QDoubleSpinBox>
 #include <QListWidget>
 #include <QPushButton>
 
@@ -91,6 +92,44 @@ TEST_F(PointsInWindow, TheBoxGoesAroundTheSelectedElementAndCutsTheScan) {
   EXPECT_TRUE(box.on);
   EXPECT_LT(glm::length(box.centre - bounds.centre()), 1e-9);
   EXPECT_LT(glm::length(box.size - (bounds.size() + 1.0)), 1e-9);
+}
+
+TEST_F(PointsInWindow, PlanesCutTheScanOneByOne) {
+  const auto total = [this] { return session().rendered()->frame.picture.pointsDrawn; };
+  const std::uint64_t whole = total();
+  const auto press = [this](const char* name) {
+    auto* button = window->findChild<QPushButton*>(name);
+    ASSERT_NE(button, nullptr);
+    button->click();
+    ASSERT_TRUE(settle());
+  };
+  press("addCut");  // level, through the middle of the scans
+  const std::uint64_t below = total();
+  EXPECT_LT(below, whole);
+  press("turnCut");
+  const std::uint64_t above = total();
+  EXPECT_LT(above, whole);
+  EXPECT_NE(above, below);
+  press("addCut");  // the same plane from above: nothing is left but what lies in it
+  EXPECT_LT(total(), std::min(above, below));
+  auto* list = window->findChild<QListWidget*>("cutList");
+  ASSERT_EQ(list->count(), 2);
+  EXPECT_EQ(list->currentRow(), 1);
+  QDoubleSpinBox* tilt = nullptr;
+  for (QDoubleSpinBox* spin : panel->findChildren<QDoubleSpinBox*>())
+    if (spin->accessibleName() == "Tilt") tilt = spin;  // the last one is the planes'
+  ASSERT_NE(tilt, nullptr);
+  EXPECT_EQ(tilt->value(), 90);
+  list->setCurrentRow(0);
+  EXPECT_EQ(tilt->value(), -90) << "the figures are those of the plane that the list stands on";
+  list->setCurrentRow(1);
+  list->item(1)->setCheckState(Qt::Unchecked);
+  ASSERT_TRUE(settle());
+  EXPECT_EQ(total(), above);
+  press("removeCut");
+  press("removeCut");
+  EXPECT_EQ(list->count(), 0);
+  EXPECT_EQ(total(), whole);
 }
 
 TEST_F(PointsInWindow, WhatADistanceIsTakenOfDecidesHowManyFarPointsShow) {

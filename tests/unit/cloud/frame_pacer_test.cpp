@@ -18,8 +18,8 @@ struct Renderer {
   FramePacer pacer{[this] { return now; }};
 
   /// The time that the frame took.
-  double frame(double wantedMs) {
-    const std::uint64_t budget = pacer.begin(wantedMs);
+  double frame(double wantedMs, std::uint64_t most = 0) {
+    const std::uint64_t budget = wantedMs > 0 || most > 0 ? pacer.begin(FramePace{wantedMs, most}) : pacer.begin({});
     used = budget > 0 ? std::min(budget, inView) : inView;
     const double ms = fixedMs + msPerMillion * static_cast<double>(used) / 1e6;
     now += ms;
@@ -84,6 +84,18 @@ TEST(FramePacer, AViewWithFewerPointsThanTheBudgetDoesNotRaiseIt) {
   renderer.inView = 8'000'000;
   renderer.frame(40);
   EXPECT_LE(renderer.used, before * 5 / 4);
+}
+
+TEST(FramePacer, ABudgetOfPointsHoldsBesideTheTime) {
+  Renderer renderer;
+  renderer.frame(0, 300'000);  // no time is asked for
+  EXPECT_EQ(renderer.used, 300'000u);
+  for (int i = 0; i < 20; ++i) renderer.frame(40, 300'000);
+  EXPECT_EQ(renderer.used, 300'000u);  // 25 ms would allow more
+  for (int i = 0; i < 20; ++i) renderer.frame(20, 300'000);
+  EXPECT_LE(renderer.used, 200'000u);  // the time allows fewer
+  renderer.frame(0);
+  EXPECT_EQ(renderer.used, renderer.inView);
 }
 
 }  // namespace alidade

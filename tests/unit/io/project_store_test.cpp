@@ -129,6 +129,7 @@ Project fullProject(const TestFolder& folder) {
   visit(fill, project.display);
   visit(fill, project.display.points);
   project.display.points.hiddenClasses.set(7).set(18).set(255);
+  project.display.points.cuts = {{true, {100600.5, 196250.25, -0.0}, 0.1, -0.2}, {false, {1, 2, 3}, 4, 1.5}};
   project.scans.resize(2);
   project.designs.resize(2);
   for (auto& scan : project.scans) {
@@ -382,6 +383,17 @@ TEST(ProjectStore, ReadsAProjectOfVersionThree) {
   const auto loaded = loadProject(path);
   ASSERT_TRUE(loaded) << loaded.error().text();
   EXPECT_EQ(loaded->display.levelThreshold, LevelThreshold::ByDistance);
+}
+
+TEST(ProjectStore, ReadsAProjectOfVersionFive) {
+  const TestFolder folder;
+  const std::string path = savedProject(folder);
+  ASSERT_EQ(loadProject(path)->display.points.cuts.size(), 2u);
+  tamper(path, "DROP TABLE point_cut");
+  tamper(path, "PRAGMA user_version = 5");
+  const auto loaded = loadProject(path);
+  ASSERT_TRUE(loaded) << loaded.error().text();
+  EXPECT_TRUE(loaded->display.points.cuts.empty());
 }
 
 TEST(ProjectStore, ReadsAProjectOfVersionFour) {

@@ -44,6 +44,23 @@ TEST(PointStyle, ASectionIsASlabOrAHalfSpace) {
   EXPECT_FALSE(keeps(style, {0, 0, 6}));
 }
 
+TEST(PointStyle, CutsLeaveWhatLiesBehindAllOfThem) {
+  PointStyle style;
+  EXPECT_FALSE(style.filters());
+  style.cuts = {{true, {5, 5, 5}, 0.0, 0.0}, {true, {5, 5, 5}, std::numbers::pi / 2, 0.0}};  // a corner: face north and east
+  EXPECT_TRUE(style.filters());
+  EXPECT_TRUE(keeps(style, {4, 4, 900}));
+  EXPECT_FALSE(keeps(style, {4, 5.1, 5}));
+  EXPECT_FALSE(keeps(style, {5.1, 4, 5}));
+  style.cuts[1].on = false;
+  EXPECT_TRUE(keeps(style, {5.1, 4, 5}));
+  style.section = {true, {0, 0, 0}, 0.0, 0.0, 2};
+  EXPECT_TRUE(keeps(style, {5.1, 0.5, 5}));
+  EXPECT_FALSE(keeps(style, {5.1, 4, 5})) << "box, section and cuts each take their part";
+  style.section.on = style.cuts[0].on = false;
+  EXPECT_FALSE(style.filters());
+}
+
 TEST(Classification, NamesAreThoseOfTheStandard) {
   EXPECT_EQ(classificationName(2), "ground");
   EXPECT_EQ(classificationName(6), "building");
