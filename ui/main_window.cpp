@@ -31,6 +31,7 @@
 #include "ui/hold_keys.h"
 #include "ui/job_strip.h"
 #include "ui/message_panel.h"
+#include "ui/mount_panel.h"
 #include "ui/overlay_view.h"
 #include "ui/points_panel.h"
 #include "ui/project_panel.h"
@@ -199,6 +200,7 @@ void MainWindow::buildDocks() {
                        Qt::RightDockWidgetArea);
   m_pointsDock = dock(tr("Points"), QStringLiteral("pointsDock"), new PointsPanel(*m_session), Qt::RightDockWidgetArea);
   m_clockDock = dock(tr("Clock"), QStringLiteral("clockDock"), new ClockPanel(*m_session), Qt::RightDockWidgetArea);
+  m_mountDock = dock(tr("Mount"), QStringLiteral("mountDock"), new MountPanel(*m_session), Qt::RightDockWidgetArea);
   m_resectionDock =
       dock(tr("Refine pose"), QStringLiteral("resectionDock"), m_resectionPanel, Qt::RightDockWidgetArea);
   m_cleaningPanel = new CleaningPanel(*m_session, *m_scanWork);
@@ -239,11 +241,13 @@ void MainWindow::defaultLayout() {
   tabifyDockWidget(m_displayDock, m_pointsDock);
   tabifyDockWidget(m_displayDock, m_cleaningDock);
   tabifyDockWidget(m_displayDock, m_clockDock);
+  tabifyDockWidget(m_displayDock, m_mountDock);
   addDockWidget(Qt::BottomDockWidgetArea, m_messageDock);
   m_propertiesDock->raise();
   m_displayDock->raise();
   m_resectionDock->hide();
   m_cleaningDock->hide();
+  m_mountDock->hide();
   m_messageDock->hide();
   resizeDocks({m_projectDock, m_propertiesDock}, {270, 300}, Qt::Horizontal);
   resizeDocks({m_propertiesDock, m_displayDock}, {380, 400}, Qt::Vertical);

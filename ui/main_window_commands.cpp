@@ -92,6 +92,7 @@ void MainWindow::buildMenus() {
   panels->addAction(a[C::ShowMessages]);
   panels->addAction(a[C::ShowPoints]);
   panels->addAction(a[C::ShowClock]);
+  panels->addAction(a[C::ShowMount]);
   panels->addSeparator();
   panels->addAction(a[C::ResetLayout]);
   QMenu* theme = view->addMenu(icon(QStringLiteral("theme")), tr("Theme"));
@@ -309,6 +310,10 @@ void MainWindow::connectViewActions() {
   connect(a[C::ShowClock], &QAction::triggered, this, [this] {
     m_clockDock->show();
     m_clockDock->raise();
+  });
+  connect(a[C::ShowMount], &QAction::triggered, this, [this] {
+    m_mountDock->show();
+    m_mountDock->raise();
   });
   connect(a[C::ShowPoints], &QAction::triggered, this, [this] {
     m_pointsDock->show();

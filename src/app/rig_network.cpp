@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 
+#include "app/camera_mount.h"
 #include "app/pose_clock.h"
 
 namespace alidade {
@@ -95,7 +96,10 @@ void applyMounts(Project& project, const std::vector<FrameId>& frames, const Net
     CameraMount adjusted{body.body, summary.cameraFromBody[mount] * body.cameraFromBody};
     if (!summary.mountAccuracy.empty())
       adjusted.offsetStdM = summary.mountAccuracy[mount].offsetStdM, adjusted.rotationStdRad = summary.mountAccuracy[mount].rotationStdRad;
-    project.findCamera(project.findFrame(frames[i])->camera)->mount = std::move(adjusted);
+    CameraRecord& camera = *project.findCamera(project.findFrame(frames[i])->camera);
+    // Poses that are interpolated follow, where they were moved to the camera by the mount that it had.
+    if (camera.mount && camera.mount->body == adjusted.body && setMount(project, camera.id, adjusted)) continue;
+    camera.mount = std::move(adjusted);
   }
 }
 

@@ -80,6 +80,7 @@ void addRefine(Verbs& verbs);
 void addProjectPoints(Verbs& verbs);
 void addExportCameras(Verbs& verbs);
 void addMesh(Verbs& verbs);
+void addMount(Verbs& verbs);
 void addRegister(Verbs& verbs);
 
 }  // namespace alidade::cli

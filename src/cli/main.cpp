@@ -59,6 +59,7 @@ int main(int argc, char** argv) {
   cli::addClean(verbs);
   cli::addRegister(verbs);
   cli::addMesh(verbs);
+  cli::addMount(verbs);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

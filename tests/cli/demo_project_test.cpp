@@ -212,6 +212,20 @@ TEST(CommandLine, ARigsMountsStayInTheProject) {
   EXPECT_EQ(mounts[0]["body"], "way");
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(mounts[0]["position_on_body_m"][i], (std::array{0.1, -0.2, 0.05}[i]), 1e-12);
   EXPECT_NEAR(mounts[0]["body_from_camera_wxyz"][1], 0.8, 1e-12);
+
+  const auto set = alidadeCli("mount --json " + quoted(project) + " --position 0.11,-0.2,0.05 --position-sigma 1,1,2");
+  ASSERT_EQ(set.exitCode, 0) << set.errors << set.output;
+  const auto after = set.json()["mounts"][0];
+  EXPECT_NEAR(after["position_on_body_m"][0], 0.11, 1e-12);
+  EXPECT_NEAR(after["angles_deg"][0], 2 * std::atan2(0.8, 0.6) * 180 / std::acos(-1), 1e-9);
+  EXPECT_NEAR(after["offset_std_m"][2], 0.002, 1e-12);
+  EXPECT_TRUE(set.json()["saved"]);
+  EXPECT_NEAR(alidadeCli("mount --json " + quoted(project)).json()["mounts"][0]["position_on_body_m"][0], 0.11, 1e-12);
+  const auto far = alidadeCli("mount " + quoted(project) + " --position 2683512,1247811,413");
+  EXPECT_EQ(far.exitCode, 1);
+  EXPECT_NE(far.errors.find("in the body's axes"), std::string::npos) << far.errors;
+  EXPECT_EQ(alidadeCli("mount " + quoted(project) + " --position 1,2").exitCode, 2);
+  EXPECT_EQ(alidadeCli("mount " + quoted(project) + " --position-sigma=-1,0,0").exitCode, 1);
 }
 
 TEST(CommandLine, AProjectKeepsDepthsAndRefinesFromThem) {
