@@ -122,6 +122,7 @@ void RenderLoop::render(OverlayRenderer& renderer, const RenderRequest& request)
   if (request.played) allowForPlaying(*description);
   description->width = request.width;
   description->height = request.height;
+  description->enlargement = request.shrink;
   if (!request.residuals) description->residuals.clear();
   if (request.rawOnly) {
     description->designs.clear();

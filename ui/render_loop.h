@@ -33,7 +33,7 @@ struct RenderRequest {
   int width = 0, height = 0;  ///< of the result; 0: the raw picture's
   quint64 serial = 0;         ///< counts requests; a later one wins
   std::optional<FramePace> pace;  ///< something is being dragged or played: in time before complete
-  bool draft = false;         ///< a smaller picture
+  int shrink = 1;             ///< a draft is drawn so many times smaller than it is shown
   /// Of a video being played: waits for its turn instead of replacing what waits, and is drawn as playing allows.
   bool played = false;
   int run = 0;  ///< the playing that it belongs to

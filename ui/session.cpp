@@ -332,9 +332,9 @@ void Session::sendRequest() {
   request.before = m_showBefore;
   if (m_dragging) request.pace = m_pace;
   if (request.pace && m_pace.frameTimeMs > 0 && m_renderMs > m_pace.frameTimeMs && m_width > 0) {
-    request.width = std::max(1, m_width / 2);
-    request.height = std::max(1, m_height / 2);
-    request.draft = true;
+    request.shrink = 2;
+    request.width = std::max(1, m_width / request.shrink);
+    request.height = std::max(1, m_height / request.shrink);
   }
   ++m_requestsSent;
   request.serial = m_requestsSent;
@@ -361,7 +361,7 @@ void Session::requestPlayed(int index, const std::vector<int>& next, int run, in
   const CameraRecord* camera = m_project->findCamera(frames[static_cast<std::size_t>(index)].camera);
   if (request.width == 0 && camera) request.width = camera->camera.width(), request.height = camera->camera.height();
   request.width = request.width / shrink & ~1, request.height = request.height / shrink & ~1;
-  request.draft = shrink > 1;
+  request.shrink = shrink;
   for (const int i : next)
     if (i >= 0 && i < static_cast<int>(frames.size())) request.next.push_back(frames[static_cast<std::size_t>(i)].id);
   request.serial = m_requestsSent;

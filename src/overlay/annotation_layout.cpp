@@ -37,7 +37,7 @@ bool hasFonts() {
 
 QFont overlayFont(double scale, bool bold) {
   QFont font(QStringLiteral("DejaVu Sans"));
-  font.setPixelSize(std::max(9, static_cast<int>(std::lround(14 * scale))));
+  font.setPixelSize(std::max(6, static_cast<int>(std::lround(14 * scale))));
   font.setBold(bold);
   return font;
 }
@@ -89,7 +89,7 @@ std::optional<AnnotationLayout> layOutAnnotation(const Annotation& annotation, c
   if (!glm::all(glm::lessThan(glm::abs(layout.tip), reach)) ||
       !glm::all(glm::lessThan(glm::abs(layout.tail), reach)))
     return std::nullopt;
-  const double scale = drawingScale(scaledCamera.width(), scaledCamera.height());
+  const double scale = drawingScale(scaledCamera.width(), scaledCamera.height(), frame.enlargement);
   layout.text = layOutText(annotation.text, overlayFont(scale));
   if (layout.text.lines.isEmpty()) return layout;
   // The text stands on the side away from the tip, so that the leader does not cross it.

@@ -55,7 +55,7 @@ class Painter {
         m_image(reinterpret_cast<uchar*>(picture.colour.data()), picture.colour.width(),
                 picture.colour.height(), 4 * picture.colour.width(), QImage::Format_RGBA8888_Premultiplied),
         m_paint(&m_image),
-        m_scale(drawingScale(picture.colour.width(), picture.colour.height())),
+        m_scale(drawingScale(picture.colour.width(), picture.colour.height(), frame.enlargement)),
         m_texts(texts) {
     m_paint.setRenderHint(QPainter::Antialiasing);
   }
@@ -309,7 +309,7 @@ void paintAnnotations(OverlayPicture& picture, const FrameDescription& frame, co
 AnnotationId annotationAt(const FrameDescription& frame, const Camera& scaledCamera,
                           const glm::dvec2& pixel) {
   if (!frame.display.annotations) return {};
-  const double reach = 5 * drawingScale(scaledCamera.width(), scaledCamera.height());
+  const double reach = 5 * drawingScale(scaledCamera.width(), scaledCamera.height(), frame.enlargement);
   // The last one is painted on top.
   for (auto it = frame.annotations.rbegin(); it != frame.annotations.rend(); ++it) {
     const auto layout = layOutAnnotation(*it, frame, scaledCamera);

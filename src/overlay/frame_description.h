@@ -66,6 +66,7 @@ struct FrameDescription {
   // While the view moves, frames are quick before they are complete (frame_pacer.h).
   std::uint64_t pointBudget = 0;  ///< of each scan pass, over all scans; 0: none
   double selectionAgeMs = 0;      ///< points chosen for an earlier frame may serve this one for so long
+  double enlargement = 1;  ///< a draft is shown so many times larger than it is drawn: letters and marks are drawn so much smaller
   /// Of a video that plays, where a frame has a fifteenth of a second: what hides the design is judged by the scanners' own
   /// grid alone where there is one, else by the points, on half the picture's width and height where they are even, and
   /// spread along its surfaces (see raster/depth_spread.h); elements' pixels are not counted.

@@ -23,8 +23,8 @@ float flag(bool on) {
 
 }  // namespace
 
-double drawingScale(int width, int height) {
-  return std::max(1.0, std::min(width / 1920.0, height / 1080.0));
+double drawingScale(int width, int height, double enlargement) {
+  return std::max(1.0, enlargement * std::min(width / 1920.0, height / 1080.0)) / enlargement;
 }
 
 FrameUniform frameUniform(const DrawList& list) {

@@ -42,8 +42,8 @@ static_assert(sizeof(SurfaceVertex) == 28 && offsetof(SurfaceVertex, normal) == 
 static_assert(sizeof(EdgeVertex) == 20 && offsetof(EdgeVertex, element) == 12 &&
               offsetof(EdgeVertex, along) == 16);
 
-/// Lines and patterns keep their size on a 1080-line picture and grow with larger ones.
-double drawingScale(int width, int height);
+/// Lines and patterns keep their size on a 1080-line picture and grow with larger ones. `enlargement` as in FrameDescription.
+double drawingScale(int width, int height, double enlargement = 1);
 
 /// Whether the edge pass runs at all.
 inline bool drawsEdges(const DrawList& list) {

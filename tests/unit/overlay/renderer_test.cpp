@@ -448,6 +448,25 @@ TEST(OverlayRenderer, GivesAPictureWithCountsMarksAndNames) {
   EXPECT_GT(differingPixels(bare->colour, picture->colour, 8), 3000u);
 }
 
+TEST(OverlayRenderer, MarksOfADraftAreAsLargeOnceItIsEnlarged) {
+  auto renderer = OverlayRenderer::create();
+  ASSERT_TRUE(renderer);
+  const auto marked = [&](int width, double enlargement) {
+    FrameDescription frame = boxesFrame(glm::dvec3(0), 1280, 800);
+    frame.designs.clear();
+    frame.width = width, frame.height = width * 5 / 8;
+    frame.enlargement = enlargement;
+    const auto bare = (*renderer)->render(frame);
+    frame.stakePoints.push_back({"S100", {0, 0, 0}, "AXIS", 0.01});
+    const auto picture = (*renderer)->render(frame);
+    return static_cast<double>(differingPixels(bare->colour, picture->colour, 8));
+  };
+  const double whole = marked(1280, 1), draft = marked(640, 2);
+  EXPECT_GT(whole, 400);
+  EXPECT_GT(draft, 0.18 * whole);
+  EXPECT_LT(draft, 0.36 * whole);
+}
+
 TEST(OverlayRenderer, RefusesAFrameWithoutCameraOrOfAnImpossibleSize) {
   auto renderer = OverlayRenderer::create();
   ASSERT_TRUE(renderer);
