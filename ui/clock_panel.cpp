@@ -97,6 +97,7 @@ const Trajectory* ClockPanel::trajectory() const {
 }
 
 void ClockPanel::refresh() {
+  setEnabled(!m_session.playing());
   if (m_session.playing()) return;
   const QSignalBlocker offset(m_offset), readout(m_readout);
   const Project& project = *m_session.project();

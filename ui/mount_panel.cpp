@@ -115,6 +115,7 @@ MountPanel::MountPanel(Session& session, QWidget* parent) : QWidget(parent), m_s
 }
 
 void MountPanel::refresh() {
+  setEnabled(!m_session.playing());
   if (m_session.playing()) return;
   const CameraRecord* camera = m_session.currentCamera();
   const auto& mount = camera ? camera->mount : std::nullopt;

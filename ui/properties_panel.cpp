@@ -74,6 +74,7 @@ void PropertiesPanel::row(const QString& name, const QString& value, const QStri
 }
 
 void PropertiesPanel::rebuild() {
+  setEnabled(!m_session.playing());
   if (m_session.playing()) return;  // made anew once it stops
   auto* page = new QWidget;
   m_layout = new QVBoxLayout(page);
