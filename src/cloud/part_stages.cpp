@@ -9,6 +9,10 @@
 #include <optional>
 #include <utility>
 
+#if defined(__GLIBC__)
+#include <malloc.h>
+#endif
+
 #include "cloud/byte_pack.h"
 #include "cloud/morton.h"
 #include "cloud/ordered_work.h"
@@ -58,6 +62,15 @@ UnitBox boxOf(const PlanCell& cell) {
 
 /// Before a record of what a cell left to the tree above: its level, where that was drawn.
 constexpr std::size_t kTopHeader = sizeof(std::int64_t);
+
+/// Frees what it holds, to the system: a heap keeps large pieces that were freed, and hardly finds a use for them.
+template <class Holder>
+void giveBack(Holder& holder) {
+  holder = {};
+#if defined(__GLIBC__)
+  ::malloc_trim(0);
+#endif
+}
 
 /// Of a DisplayPoint: what a record begins with.
 constexpr std::size_t kPointBytes = 8;
@@ -439,7 +452,7 @@ Result<PartTree> PartStages::run(const Progress& progress) {
       auto item = shelf.take();
       if (auto built = buildStream(s, *shop, item->output); !built) return fail(built.error());
       m_streams->release(m_usedStreams[s]);
-      if (!keeps) *shop = {};
+      if (!keeps) giveBack(*shop);
       OrderedWork::Built left;
       left.place = [this, item] { item->at = place(item->output); };
       left.finish = [&, item, s, keeps]() -> Result<void> {
@@ -455,6 +468,7 @@ Result<PartTree> PartStages::run(const Progress& progress) {
           releaseBorders(s);
         }
         if (keeps) shelf.giveBack(item);
+        else giveBack(item->output);
         return {};
       };
       return left;
