@@ -119,6 +119,7 @@ void MountPanel::refresh() {
   if (m_session.playing()) return;
   const CameraRecord* camera = m_session.currentCamera();
   const auto& mount = camera ? camera->mount : std::nullopt;
+  m_shown = camera ? camera->id : CameraId();
   m_problem->hide();
   m_camera->setText(camera ? text(camera->name) : tr("This frame has no camera"));
   m_on->setEnabled(camera != nullptr);
@@ -181,7 +182,8 @@ MountFigures MountPanel::figures() const {
 
 void MountPanel::take() {
   const CameraRecord* camera = m_session.currentCamera();
-  if (!camera) return;
+  // A field that is left half typed when another frame comes speaks of the camera that was shown.
+  if (!camera || m_session.playing() || camera->id != m_shown) return;
   std::optional<CameraMount> wanted;
   const auto refuse = [this](const Error& error) {
     m_problem->setText(errorText(error));

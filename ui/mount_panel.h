@@ -38,6 +38,7 @@ class MountPanel : public QWidget {
 
   Session& m_session;
   QLabel *m_camera, *m_note, *m_problem;
+  CameraId m_shown;  ///< whose figures the fields have
   QCheckBox* m_on;
   QComboBox* m_body;
   QWidget* m_fields;

@@ -9,7 +9,6 @@
 
 #include <fmt/format.h>
 
-#include "app/pose_clock.h"
 #include "geometry/angle.h"
 #include "geometry/attitude.h"
 
@@ -69,7 +68,8 @@ Result<CameraMount> mountOf(const MountFigures& figures) {
 Result<void> setMount(Project& project, CameraId id, const std::optional<CameraMount>& mount) {
   CameraRecord* camera = project.findCamera(id);
   if (!camera) return fail("The project has no such camera", project.path, "Add a calibration");
-  const RigidTransform newFromOld = bodyPlace(mount) * bodyPlace(camera->mount).inverse();
+  const bool isOnAnother = mount && camera->mount && mount->body != camera->mount->body;
+  const RigidTransform newFromOld = isOnAnother ? RigidTransform::identity() : bodyPlace(mount) * bodyPlace(camera->mount).inverse();
   const glm::dquat& turn = newFromOld.rotation;
   const bool moves = glm::length(newFromOld.translation) > kRoundingM || glm::length(glm::dvec3(turn.x, turn.y, turn.z)) > kRoundingRad;
   if (moves) {
@@ -81,7 +81,12 @@ Result<void> setMount(Project& project, CameraId id, const std::optional<CameraM
       std::vector<PoseSample> samples = its->track.samples();
       for (PoseSample& sample : samples) sample.cameraFromWorld = newFromOld * sample.cameraFromWorld;
       its->track = PoseTrack(std::move(samples));
-      poseFromTrajectory(project, trajectory);
+    }
+    // Moved as they are: what a whole sequence's refinement corrected between keyframes stays corrected.
+    for (Frame& frame : project.frames) {
+      if (!own->contains(frame.trajectory)) continue;
+      if (frame.poseSource == PoseSource::Interpolated && frame.cameraFromWorld) frame.cameraFromWorld = newFromOld * *frame.cameraFromWorld;
+      if (frame.originalCameraFromWorld) frame.originalCameraFromWorld = newFromOld * *frame.originalCameraFromWorld;
     }
   }
   camera->mount = mount;

@@ -30,7 +30,8 @@ Result<CameraMount> mountOf(const MountFigures& figures);
 
 /// Puts a camera elsewhere on its body; nothing takes it off. The trajectories that serve its frames were moved from the
 /// body's place to the camera's: they follow, and with them the frames whose poses are interpolated on them; a refined
-/// pose stays. A camera without a mount is taken for one that sits where its body is. Error where the project has no such camera,
+/// pose stays. A camera without a mount is taken for one that sits where its body is. A mount that names another body only tells where the
+/// camera is from there: nothing moves. Error where the project has no such camera,
 /// or where such a trajectory serves frames of other cameras, too; the project is unchanged then.
 Result<void> setMount(Project& project, CameraId camera, const std::optional<CameraMount>& mount);
 

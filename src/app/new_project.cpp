@@ -269,6 +269,7 @@ class Assembler {
   Result<void> addVideo(const std::string& path, const PictureSetInfo& set) {
     auto source = describeSource(path);
     if (!source) return fail(source.error());
+    if (isThere(project().videos, *source)) return {};
     Video video;
     video.id.value = nextId(project().videos);
     video.name = stemOf(path);

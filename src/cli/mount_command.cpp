@@ -95,6 +95,8 @@ Result<Answer> run(const Arguments& arguments) {
     }
     if (auto set = setMount(*project, *id, mount); !set) return fail(set.error());
   }
+  if (!arguments.camera.empty())
+    if (const auto id = cameraByName(*project, arguments.camera); !id) return fail(id.error());
   const bool saves = (sets || arguments.remove) && !arguments.dryRun;
   if (saves)
     if (auto saved = saveProject(*project, arguments.project); !saved) return fail(saved.error());
@@ -118,9 +120,9 @@ void addMount(Verbs& verbs) {
   command->add_option("--body", arguments->body, "What carries it: a trajectory's sensor, or another camera; those on one body make a rig");
   command->add_option("--position", arguments->position, "Of the camera's centre in the body's axes, metres")->check(three);
   command->add_option("--angles", arguments->angles, "Degrees about the body's x, then the new y, then the new z; 0,0,0: the body's axes")->check(three);
-  command->add_option("--position-sigma", arguments->positionStd, "Standard deviations along the camera's axes, millimetres")->check(three);
-  command->add_option("--angle-sigma", arguments->anglesStd, "Standard deviations about the camera's axes, degrees")->check(three);
-  auto* remove = command->add_flag("--remove", arguments->remove, "The camera sits on no body");
+  command->add_option("--position-sigma", arguments->positionStd, "Standard deviations along the camera's axes, millimetres: kept and shown; adjustments do not weigh by them")->check(three);
+  command->add_option("--angle-sigma", arguments->anglesStd, "Standard deviations about the camera's axes, degrees: kept and shown")->check(three);
+  auto* remove = command->add_flag("--remove", arguments->remove, "The camera sits on no body; its trajectory goes back to the body's place");
   for (const char* other : {"--body", "--position", "--angles", "--position-sigma", "--angle-sigma"}) remove->excludes(other);
   command->add_flag("--dry-run", arguments->dryRun, "Report only; leave the project as it is");
 }

@@ -273,7 +273,7 @@ void addOverlay(Verbs& verbs) {
   command->add_flag("--before", arguments->before, "With the poses as they were imported, where a refinement replaced them");
   command->add_option("--storey", arguments->storey, "Of the design only this storey's elements");
   command->add_option("--hide", arguments->hide, "A scan, design or element that is left out, again for more: name, or an element's global id")->allow_extra_args(false);
-  command->add_option("--point-budget", arguments->pointBudget, "Draw with at most so many points")->check(checkedBy(parseBudget, "POINTS"));
+  command->add_option("--point-budget", arguments->pointBudget, "At most so many points in view: of those that are shown, and of those that judge what is hidden")->check(checkedBy(parseBudget, "POINTS"));
   command->add_option("--frame-time", arguments->frameTimeMs, "With --frames: draw with as many points as keep a frame to so many milliseconds")
       ->check(numberWithin(1.0, 10'000.0))->needs(range);
   display->emplace(*command);

@@ -27,11 +27,11 @@ const DesignElement* elementAt(const RenderedFrame& rendered, int x, int y) {
 }
 
 void describe(const RenderedFrame& rendered, const glm::dvec2& pixel, Answer& answer) {
-  const int x = static_cast<int>(std::lround(pixel.x)), y = static_cast<int>(std::lround(pixel.y));
+  const bool inside = pixel.x > -0.5 && pixel.y > -0.5 && pixel.x < rendered.picture.colour.width() - 0.5 && pixel.y < rendered.picture.colour.height() - 0.5;
+  const int x = inside ? static_cast<int>(std::lround(pixel.x)) : 0, y = inside ? static_cast<int>(std::lround(pixel.y)) : 0;
   Json point = {{"u_px", pixel.x}, {"v_px", pixel.y}, {"world_m", nullptr}, {"depth_m", nullptr}, {"distance_m", nullptr},
                 {"uncertainty_m", nullptr}, {"element", nullptr}};
   std::string words = fmt::format("{:.3f} {:.3f}", pixel.x, pixel.y);
-  const bool inside = x >= 0 && y >= 0 && x < rendered.picture.colour.width() && y < rendered.picture.colour.height();
   const CursorReadout readout = inside ? readoutAt(rendered, pixel) : CursorReadout();
   if (readout.world) {
     point["world_m"] = {readout.world->x, readout.world->y, readout.world->z};

@@ -137,8 +137,12 @@ Result<void> FileSink::read(std::size_t column, std::uint64_t offset, std::span<
 }
 
 Result<void> FileSink::flush() {
-  for (File& file : m_columns)
-    if (file.dirty.exchange(false) && ::fdatasync(file.descriptor) != 0) return fail(diskError(errno, file.path));
+  if (m_lost != 0) return fail(diskError(m_lost, m_columns.front().path));
+  for (File& file : m_columns) {
+    if (!file.dirty.exchange(false) || ::fdatasync(file.descriptor) == 0) continue;
+    m_lost = errno;
+    return fail(diskError(m_lost, file.path));
+  }
   return {};
 }
 

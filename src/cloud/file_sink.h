@@ -54,6 +54,7 @@ class FileSink : public PartSink {
 
   std::string m_folder;
   std::deque<File> m_columns;  ///< by PartSink::Column
+  std::atomic<int> m_lost = 0;  ///< errno of a flush that failed: pages may be gone, and nothing after it is vouched for
   File m_diary;
   std::uint64_t m_purposeEnd = 0, m_diaryEnd = 0;
   std::vector<std::vector<std::byte>> m_past;

@@ -36,7 +36,13 @@ NodeSlab slabOf(std::span<const glm::vec3> places) {
   slab.thickness = static_cast<float>(4.0 * least);
   const double breadth = std::sqrt(12.0) * middle;  // of an even spread
   slab.roughness = slab.thickness < breadth ? static_cast<float>(slab.thickness / breadth) : 1.0f;
+  slab.area = static_cast<float>(12.0 * middle * std::sqrt(std::max(0.0, axes.eigenvalues()[2])));
   return slab;
+}
+
+void openUp(NodeSlab& slab, double covered) {
+  const double open = slab.area > 0 ? 1.0 - std::min(covered / slab.area, 1.0) : 1.0;
+  slab.roughness = std::max(slab.roughness, static_cast<float>(open));
 }
 
 double facingOf(const NodeSlab& slab, const glm::dvec3& eye, double distance) {

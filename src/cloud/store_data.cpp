@@ -12,6 +12,9 @@
 
 namespace alidade {
 
+/// Nodes above hold the coarser of a surface's points: a quarter an octave, a third of what is here in all.
+constexpr double kWithCoarser = 4.0 / 3.0;
+
 PointStoreData storeDataOf(const PartTree& part) {
   PointStoreData data;
   data.lattice = part.lattice;
@@ -43,6 +46,8 @@ PointStoreData storeDataOf(const PartTree& part) {
     node.count = built.count;
     node.spacing = built.spacingUnits * part.lattice.step;
     node.slab = built.slab;
+    openUp(node.slab, kWithCoarser * static_cast<double>(built.pointsBelow) * built.spacingUnits * built.spacingUnits);
+    node.slab.area = static_cast<float>(built.slab.area * part.lattice.step * part.lattice.step);
     node.slab.along = static_cast<float>(built.slab.along * part.lattice.step);
     node.slab.thickness = static_cast<float>(built.slab.thickness * part.lattice.step);
     data.nodes.push_back(node);
@@ -91,7 +96,7 @@ bool isFinite(const glm::dvec3& v) {
 }
 
 bool isSoundSlab(const NodeSlab& slab) {
-  return isFinite(slab.normal) && std::isfinite(slab.along) && slab.thickness >= 0 && std::isfinite(slab.thickness) && slab.roughness >= 0 && slab.roughness <= 1;
+  return isFinite(slab.normal) && std::isfinite(slab.along) && slab.thickness >= 0 && std::isfinite(slab.thickness) && slab.roughness >= 0 && slab.roughness <= 1 && slab.area >= 0 && std::isfinite(slab.area);
 }
 
 bool isSoundNode(const CloudNode& node, const PointStoreData::NodePlace& place, const PointStoreData& data) {

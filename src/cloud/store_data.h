@@ -17,7 +17,7 @@ PointStoreData storeDataOf(const PartTree& part);
 
 /// A node with its place, field by field, little endian: what nodes.bin is made of.
 inline constexpr std::size_t kNodeBytes = (11 + 1) * sizeof(double) + 6 * sizeof(std::uint32_t) + (1 + 3 + 1) * sizeof(std::uint64_t) + sizeof(NodeSlab);
-static_assert(sizeof(NodeSlab) == 6 * sizeof(float));
+static_assert(sizeof(NodeSlab) == 7 * sizeof(float));
 std::vector<std::byte> packNodes(const PointStoreData& data);
 /// `bytes` holds whole nodes.
 void unpackNodes(std::span<const std::byte> bytes, PointStoreData& data);

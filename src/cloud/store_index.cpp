@@ -60,7 +60,7 @@ class FolderLock {
 /// What has to be the same for work to be gone on with; nothing of threads and memory, which do not show.
 std::vector<std::byte> purposeOf(const ScanSource& scan, const IndexOptions& options) {
   BytePacker purpose;
-  purpose.putText("alidade-points work 2");
+  purpose.putText("alidade-points work 3");
   purpose.putText(scan.identity);
   purpose.put(scan.info.pointCount), purpose.put(scan.info.scale), purpose.put(scan.info.offset);
   purpose.put(options.levels), purpose.put(options.seed), purpose.put(options.dimensions), purpose.put(options.leafPoints);

@@ -89,6 +89,31 @@ TEST(CameraMount, ThePosesOnItsTrajectoryFollowTheCamera) {
   EXPECT_FALSE(project.cameras[0].mount);
 }
 
+TEST(CameraMount, WhatWasCorrectedBetweenKeyframesStaysCorrected) {
+  Project project = onABody();
+  Frame& frame = project.frames[0];
+  ASSERT_EQ(frame.poseSource, PoseSource::Interpolated);
+  frame.originalCameraFromWorld = frame.cameraFromWorld;
+  const RigidTransform correction{glm::angleAxis(0.01, glm::dvec3(0, 0, 1)), {0.02, -0.01, 0.03}};
+  frame.cameraFromWorld = correction * *frame.cameraFromWorld;
+  const RigidTransform wasInBody = *frame.cameraFromWorld;
+  ASSERT_TRUE(setMount(project, CameraId{1}, *mountOf({"car", {0.5, 0, -1}, {0, 0, 0.3}})));
+  const RigidTransform& mount = project.cameras[0].mount->cameraFromBody;
+  expectNear(project.frames[0].cameraFromWorld->translation, (mount * wasInBody).translation);
+  expectNear(project.frames[0].originalCameraFromWorld->translation, (mount * correction.inverse() * wasInBody).translation);
+  ASSERT_TRUE(setMount(project, CameraId{1}, std::nullopt));
+  expectNear(project.frames[0].cameraFromWorld->translation, wasInBody.translation);
+}
+
+TEST(CameraMount, AnotherBodyMovesNothing) {
+  Project project = onABody();
+  ASSERT_TRUE(setMount(project, CameraId{1}, *mountOf({"car", {0.5, 0, -1}, {0, 0, 0.3}})));
+  const RigidTransform was = *project.frames[0].cameraFromWorld;
+  ASSERT_TRUE(setMount(project, CameraId{1}, *mountOf({"left", {0.11, 0, 0}, {0, 0, 0}})));
+  EXPECT_EQ(project.cameras[0].mount->body, "left");
+  expectNear(project.frames[0].cameraFromWorld->translation, was.translation);
+}
+
 TEST(CameraMount, ATrajectoryOfSeveralCamerasStaysAndSoDoesTheProject) {
   Project project = onABody();
   project.frames[1].camera = {2};

@@ -82,14 +82,38 @@ TEST(NodeSlab, OfANodeIsThatOfAllOfIt) {
           all.push_back(glm::vec3(node.step * glm::dvec3(p.x, p.y, p.z)));
         }
         const NodeSlab whole = slabOf(all);
-        EXPECT_NEAR(node.slab.roughness, whole.roughness, 0.1) << static_cast<int>(levels) << ' ' << count;
-        for (const glm::dvec3& eye : {glm::dvec3(0.5, -9, 0.1), glm::dvec3(0.5, -9, 9), glm::dvec3(9, 0.5, 0.5)})
-          EXPECT_NEAR(facingOf(node.slab, eye - node.origin, 9.0), facingOf(whole, eye - node.origin, 9.0), 0.1) << static_cast<int>(levels) << ' ' << count;
+        // What is covered is an estimate: some of a whole surface may count as open, which only costs points.
+        EXPECT_GT(node.slab.roughness, whole.roughness - 0.1) << static_cast<int>(levels) << ' ' << count;
+        EXPECT_LT(node.slab.roughness, whole.roughness + 0.3) << static_cast<int>(levels) << ' ' << count;
+        EXPECT_GT(std::abs(glm::dot(node.slab.normal, whole.normal)), whole.roughness < 0.5f ? 0.95 : 0.0);
         ++looked;
       }
     }
   }
   EXPECT_GE(looked, 4);
+}
+
+TEST(NodeSlab, BarsInAPlaneAreNoSurface) {
+  // A fence in the plane y = 0: bars of 2 cm, one every 20 cm, scanned every 5 mm; and a board as large, scanned every 3 cm.
+  std::mt19937 random(6);
+  std::uniform_real_distribution<double> side(0.0, 1.0);
+  PointBatch fence, board;
+  for (int i = 0; i < 16'000; ++i) {
+    const double round = 6.2831853 * side(random);
+    fence.position.push_back({0.2 * std::floor(10 * side(random)) + 0.01 * std::cos(round), 0.01 * std::sin(round), side(random)});
+  }
+  for (int i = 0; i < 2'000; ++i) board.position.push_back({1.8 * side(random), 0.0, side(random)});
+  const auto leastFacing = [](PointBatch batch) {
+    PointStoreBuilder builder;
+    builder.add(std::move(batch));
+    const auto store = builder.build(Progress());
+    double least = 1;
+    for (const CloudNode& node : (*store)->nodes())
+      if (node.count > 0) least = std::min(least, facingOf(node.slab, glm::dvec3(20, -0.5, 0.5) - node.origin, 18.0));
+    return least;
+  };
+  EXPECT_GT(leastFacing(std::move(fence)), 0.6);
+  EXPECT_LT(leastFacing(std::move(board)), 0.45);
 }
 
 }  // namespace

@@ -303,8 +303,8 @@ TEST_P(SiteViewTest, AMovingViewThatIsSlowDrawsFewerPointsAndAStillOneAll) {
   showAll();
   PointStoreBuilder builder;
   PointBatch batch;
-  for (int i = 0; i < 400'000; ++i)
-    batch.position.push_back(place + glm::dvec3(-10 + 0.025 * (i % 800), -6 + 0.024 * (i / 800), 4.0));
+  for (int i = 0; i < 600'000; ++i)
+    batch.position.push_back(place + glm::dvec3(-10 + 0.025 * (i % 800), -6 + 0.016 * (i / 800), 4.0));
   builder.add(batch);
   view->setClouds({{*builder.build(Progress()), nullptr, 0}});
   picture("still");
