@@ -41,6 +41,7 @@ const std::map<std::string, std::vector<std::string>> kOwners = {
     {"vulkan/", {"src/gpu"}},
     {"vtk", {"src/scene"}},
     {"ceres/", {"src/adjust"}},
+    {"hwy/", {"src/cloud"}},
     {"pcl/", {"src/cleaning"}},
     {"opencv2/", {"src/io", "src/targets", "plugins/opencv-calib", "plugins/pictures", "plugins/e57", "src/align"}},
     {"pugixml", {"plugins/e57", "plugins/metashape", "plugins/realitycapture"}},
