@@ -65,13 +65,14 @@ Result<CameraMount> mountOf(const MountFigures& figures) {
   return CameraMount{body, RigidTransform{bodyFromCamera, position}.inverse(), positionStd, anglesStd};
 }
 
-Result<void> setMount(Project& project, CameraId id, const std::optional<CameraMount>& mount) {
+Result<int> setMount(Project& project, CameraId id, const std::optional<CameraMount>& mount) {
   CameraRecord* camera = project.findCamera(id);
   if (!camera) return fail("The project has no such camera", project.path, "Add a calibration");
   const bool isOnAnother = mount && camera->mount && mount->body != camera->mount->body;
   const RigidTransform newFromOld = isOnAnother ? RigidTransform::identity() : bodyPlace(mount) * bodyPlace(camera->mount).inverse();
   const glm::dquat& turn = newFromOld.rotation;
   const bool moves = glm::length(newFromOld.translation) > kRoundingM || glm::length(glm::dvec3(turn.x, turn.y, turn.z)) > kRoundingRad;
+  int followed = 0;
   if (moves) {
     const auto own = ownTrajectories(project, *camera);
     if (!own) return fail(own.error());
@@ -85,12 +86,12 @@ Result<void> setMount(Project& project, CameraId id, const std::optional<CameraM
     // Moved as they are: what a whole sequence's refinement corrected between keyframes stays corrected.
     for (Frame& frame : project.frames) {
       if (!own->contains(frame.trajectory)) continue;
-      if (frame.poseSource == PoseSource::Interpolated && frame.cameraFromWorld) frame.cameraFromWorld = newFromOld * *frame.cameraFromWorld;
+      if (frame.poseSource == PoseSource::Interpolated && frame.cameraFromWorld) frame.cameraFromWorld = newFromOld * *frame.cameraFromWorld, ++followed;
       if (frame.originalCameraFromWorld) frame.originalCameraFromWorld = newFromOld * *frame.originalCameraFromWorld;
     }
   }
   camera->mount = mount;
-  return {};
+  return followed;
 }
 
 }  // namespace alidade

@@ -32,7 +32,7 @@ Result<CameraMount> mountOf(const MountFigures& figures);
 /// body's place to the camera's: they follow, and with them the frames whose poses are interpolated on them; a refined
 /// pose stays. A camera without a mount is taken for one that sits where its body is. A mount that names another body only tells where the
 /// camera is from there: nothing moves. Error where the project has no such camera,
-/// or where such a trajectory serves frames of other cameras, too; the project is unchanged then.
-Result<void> setMount(Project& project, CameraId camera, const std::optional<CameraMount>& mount);
+/// or where such a trajectory serves frames of other cameras, too; the project is unchanged then. Tells how many frames followed.
+Result<int> setMount(Project& project, CameraId camera, const std::optional<CameraMount>& mount);
 
 }  // namespace alidade

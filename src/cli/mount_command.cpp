@@ -82,6 +82,7 @@ Result<Answer> run(const Arguments& arguments) {
   auto project = loadProject(arguments.project);
   if (!project) return fail(project.error());
   const bool sets = !(arguments.body + arguments.position + arguments.angles + arguments.positionStd + arguments.anglesStd).empty();
+  int followed = 0;
   if (sets || arguments.remove) {
     const auto id = cameraByName(*project, arguments.camera);
     if (!id) return fail(id.error());
@@ -93,7 +94,9 @@ Result<Answer> run(const Arguments& arguments) {
       if (!made) return fail(made.error());
       mount = std::move(*made);
     }
-    if (auto set = setMount(*project, *id, mount); !set) return fail(set.error());
+    const auto set = setMount(*project, *id, mount);
+    if (!set) return fail(set.error());
+    followed = *set;
   }
   if (!arguments.camera.empty())
     if (const auto id = cameraByName(*project, arguments.camera); !id) return fail(id.error());
@@ -101,9 +104,10 @@ Result<Answer> run(const Arguments& arguments) {
   if (saves)
     if (auto saved = saveProject(*project, arguments.project); !saved) return fail(saved.error());
   Answer answer;
-  answer.json = {{"mounts", Json::array()}, {"saved", saves}};
+  answer.json = {{"mounts", Json::array()}, {"saved", saves}, {"poses_followed", followed}};
   for (const CameraRecord& camera : project->cameras)
     if (camera.mount && (arguments.camera.empty() || camera.name == arguments.camera)) describe(camera, answer);
+  if (sets || arguments.remove) answer.text += fmt::format("{} {} followed\n", followed, followed == 1 ? "pose" : "poses");
   if (answer.text.empty()) answer.text = "No camera sits on a body\n";
   return answer;
 }

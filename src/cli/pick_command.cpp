@@ -63,6 +63,9 @@ void addPick(Verbs& verbs) {
       [arguments](const Progress& progress) -> Result<Answer> {
         const auto rows = rowsFromInput(2, "pixels", "u v", progress);
         if (!rows) return fail(rows.error());
+        for (std::size_t i = 0; i < rows->size(); ++i)
+          if (!std::isfinite((*rows)[i][0]) || !std::isfinite((*rows)[i][1]))
+            return fail(fmt::format("Pixel {} is no finite number", i + 1), "standard input", "Give u v, one pixel a line");
         auto open = openProject(arguments->project, arguments->frame, true, progress);
         if (!open) return fail(open.error());
         auto renderer = OverlayRenderer::create();
